@@ -70,7 +70,7 @@ fn a_motion_with_the_opposite_sign_is_warned_of_first_and_in_the_json() {
     let first = run.stderr.lines().next().unwrap();
     assert!(first.starts_with("warning: `knee_angle_r` lies outside its range"), "{}", run.stderr);
     assert!(
-        first.contains("in 100 % of the frames (-70.0 .. -60.0 deg); opposite sign? With it 100 % of the frames"),
+        first.contains("in 100 % of the time (-70.0 .. -60.0 deg); opposite sign? With it 100 % of the time"),
         "{first}"
     );
     let report: Value = serde_json::from_str(&run.stdout).unwrap();
@@ -96,7 +96,7 @@ fn a_load_of_many_times_the_strength_is_told_in_words_with_the_joints_out_of_ran
     for (knee, doubt) in [
         (
             "-60",
-            "check the sign of right knee (knee_angle_r), which is outside of its range in 100\u{a0}% of the frames.",
+            "check the sign of right knee (knee_angle_r), which is outside of its range in 100\u{a0}% of the time.",
         ),
         ("60", "check the signs and units of angles and loads."),
     ] {
@@ -685,7 +685,7 @@ fn a_foot_in_the_air_that_is_named_as_a_support_gives_a_warning_with_its_height(
     let warning = run.stderr.lines().find(|line| line.contains("support `calcn_r` is ")).unwrap();
     let height: f64 = warning.split("is ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     // The thigh of the adult is level, its shank hangs: the foot is about a thigh's length up.
-    assert!((30.0..50.0).contains(&height) && warning.contains("100 % of the frames"), "{warning}");
+    assert!((30.0..50.0).contains(&height) && warning.contains("100 % of the time"), "{warning}");
     assert!(!run.stderr.contains("support `calcn_l` is "), "{}", run.stderr);
 }
 

@@ -138,9 +138,9 @@ impl Job {
         let mut body = self.body();
         let mut centers = vec![];
         let quantities = Quantities { passive_torque: true, ..Quantities::default() };
-        for (frame, (_, posture)) in self.recorded.frames.iter().enumerate() {
+        for (time, posture) in &self.recorded.frames {
             body.update(&self.opened.model, posture, &[], quantities)
-                .map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
+                .map_err(|why| Fail::Refused(format!("at {time} s: {why}")))?;
             centers.extend(body.kinematics().center_of_mass(&self.opened.model));
         }
         if self.recorded.rates.is_empty()
@@ -165,7 +165,7 @@ impl Job {
         let mut loads = vec![];
         let mut inertia = Inertia::new(model);
         for (index, (time, posture)) in self.recorded.frames.iter().enumerate() {
-            let failed = |why: JointTorquesError| Fail::Refused(format!("frame {index}: {why}"));
+            let failed = |why: JointTorquesError| Fail::Refused(format!("at {time} s: {why}"));
             body.place(model, posture).map_err(|error| failed(error.into()))?;
             loads.clone_from(&self.loads);
             if let Some(ground) = &self.ground {
@@ -175,7 +175,7 @@ impl Job {
             if let Some(rates) = rates {
                 let given = (rates.speeds.as_slice(), rates.accelerations.as_slice());
                 let update = inertia.update(model, body.kinematics(), given, &loads);
-                update.map_err(|why| Fail::Refused(format!("frame {index}: {why}")))?;
+                update.map_err(|why| Fail::Refused(format!("at {time} s: {why}")))?;
                 body.apply_moving(model, &loads, &inertia, quantities).map_err(failed)?;
             } else {
                 body.apply(model, &loads, quantities).map_err(failed)?;

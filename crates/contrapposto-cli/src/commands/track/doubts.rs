@@ -33,8 +33,8 @@ pub(crate) fn doubts(model: &Model, matched: &Matched, unit: MarkerUnit, motion:
     if other_unit.is_none() && sides.is_none() {
         warnings.extend(swapped_pairs(model, matched, motion));
         warnings.extend(far(matched, motion));
+        warnings.extend(lying(model, motion));
     }
-    warnings.extend(lying(model, motion));
     warnings.extend(gaps(matched, motion));
     let open = motion.2.iter().filter(|frame| !frame.solved.converged).count();
     if open > 0 {
