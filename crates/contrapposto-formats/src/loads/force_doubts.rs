@@ -62,7 +62,7 @@ impl GroundReaction {
                     100.0 * on_other,
                     name(other)
                 ));
-            } else if height > IN_THE_AIR && own > NEARER * on_other {
+            } else if height > IN_THE_AIR && !(self.places(segment) && own < NEARER * on_other) {
                 swapped.push(format!(
                     "`{here}` carries the body alone while it is {:.0} cm above `{}`, which carries nothing",
                     100.0 * height,
@@ -79,6 +79,12 @@ impl GroundReaction {
             found.insert(0, format!("left and right seem to be swapped in the forces of {}: {why}", self.name()));
         }
         found
+    }
+
+    /// Whether points that are measured apart from the segment tell where forces on it act.
+    fn places(&self, segment: usize) -> bool {
+        let mut on = self.plates().iter().filter(|plate| plate.segment == segment);
+        on.any(|plate| plate.point.is_some() && plate.point_in != Some(segment))
     }
 
     /// Sums over the frames that the table covers, by segment.
