@@ -33,6 +33,7 @@ KEPT = HERE / "crates/contrapposto-formats/tests/data/adult_peers.json"
 POSTURES_KEPT = 10
 LIMITS = {"pinocchio": 1e-9, "mujoco": 1e-9, "opensim": 1e-6}
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 
 
 def exchange(folder):

@@ -25,6 +25,7 @@ HERE = pathlib.Path(__file__).resolve().parent.parent
 KEPT = HERE / "crates/contrapposto-formats/tests/data/motion_peers.json"
 LIMIT = 1e-5
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 
 
 def exchange(folder):

@@ -62,6 +62,7 @@ def of_pinocchio(path):
 
 def of_opensim(path):
     opensim.Logger.setLevelString("off")
+    opensim.Logger.removeFileSink()
     model = opensim.Model(str(path))
     state = model.initSystem()
     solver = opensim.InverseDynamicsSolver(model)

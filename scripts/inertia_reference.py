@@ -28,6 +28,7 @@ CASES = 3
 ROOT = ["root_tx", "root_ty", "root_tz"]
 TURN = ["root_mx", "root_my", "root_mz"]
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 
 
 def row(values):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Inverse dynamics of published OpenSim pipelines by OpenSim 4.6 and by contrapposto, on the same files: differences and times.
+"""Inverse dynamics of published OpenSim pipelines by OpenSim 4.6 and by contrapposto, on the same files: differences.
 
     python3 -m venv venv && venv/bin/pip install opensim==4.6 numpy
     cargo build --release
@@ -7,8 +7,7 @@
 
 FOLDER is the folder `Pipelines` of opensim-core's `opensim-models` repository, which is not a part of this project. Each pipeline is
 copied into a temporary folder. OpenSim runs without the forces of the model; our torques are external ones with their signs turned. Frames
-before the first one of the motion, which OpenSim extrapolates, are left out. Times are those of the solvers alone, for gait2392 in
-../shared: OpenSim's without the placing of values, ours (the bench `dynamics/gait2392`) with it.
+before the first one of the motion, which OpenSim extrapolates, are left out. `opensim_times.py` times both.
 """
 
 import csv
@@ -18,7 +17,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 import xml.etree.ElementTree
 
 import numpy
@@ -30,6 +28,7 @@ PIPELINES = {  # folder, model, setup of inverse dynamics
     "Gait10dof18musc": ("OutputReference/subject01.osim", "ID/walk_Setup_ID.xml"),
 }
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 
 
 def sto(path):
@@ -100,48 +99,10 @@ def compare(pipelines, name, program):
         print(f"  greatest difference {100 * worst:.4f} % of a peak")
 
 
-def opensims_time(path):
-    """Seconds a frame of OpenSim's solver: random values placed, velocities realised, torques for given accelerations."""
-    model = opensim.Model(str(path))
-    model.updForceSet().clearAndDestroy()
-    state = model.initSystem()
-    coordinates = [model.getCoordinateSet().get(i) for i in range(model.getCoordinateSet().getSize())]
-    solver, random = opensim.InverseDynamicsSolver(model), numpy.random.RandomState(1)
-    udot = opensim.Vector(state.getNU(), 0.1)
-    best = 1e9
-    for _ in range(5):
-        poses = random.uniform(-0.5, 0.5, (200, len(coordinates))).tolist()
-        spent = 0.0
-        for pose in poses:
-            for coordinate, value in zip(coordinates, pose):
-                coordinate.setValue(state, value, False)
-            begin = time.perf_counter()
-            model.realizeVelocity(state)
-            solver.solve(state, udot)
-            spent += time.perf_counter() - begin
-        best = min(best, spent / len(poses))
-    return best
-
-
-def our_time():
-    """Seconds a frame of the bench: kinematics, inertia, torques."""
-    command = ["cargo", "bench", "-p", "contrapposto-formats", "--bench", "statics", "--", "dynamics/gait2392"]
-    text = subprocess.run(command, capture_output=True, text=True, check=True, cwd=REPOSITORY).stdout
-    value, unit = text.split("time:")[1].split("[")[1].split()[2:4]
-    return float(value) * {"ns": 1e-9, "\u00b5s": 1e-6, "us": 1e-6, "ms": 1e-3}[unit]
-
-
-def speed():
-    theirs = opensims_time(REPOSITORY.parent / "shared/models/opensim/gait2392_thelen2003muscle.osim")
-    mine = our_time()
-    print(f"gait2392, a frame: OpenSim {1e6 * theirs:.1f} us, contrapposto {1e6 * mine:.2f} us, {theirs / mine:.0f} times faster")
-
-
 def main():
     program = sys.argv[2] if len(sys.argv) > 2 else str(REPOSITORY / "target/release/contrapposto")
     for name in PIPELINES:
         compare(pathlib.Path(sys.argv[1]), name, program)
-    speed()
 
 
 if __name__ == "__main__":

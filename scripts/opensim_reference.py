@@ -22,6 +22,7 @@ import opensim
 HERE = pathlib.Path(__file__).resolve().parent.parent / "crates/contrapposto-formats/tests"
 TOOL = f"opensim {opensim.GetVersion()}"
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 
 ANGLES = [0.7, -0.3, 0.0, 2.0, -1.6]
 

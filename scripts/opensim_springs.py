@@ -16,6 +16,7 @@ import numpy
 import opensim
 
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 RANDOM = numpy.random.default_rng(19)
 FILE = pathlib.Path(__file__).resolve().parent.parent / "crates/contrapposto-formats/tests/data/opensim_springs.json"
 VECTOR = opensim.Vec3

@@ -17,6 +17,7 @@ import numpy
 import opensim
 
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 LINES = int(sys.argv[1]) if len(sys.argv) > 1 else 4
 RANDOM = numpy.random.default_rng(int(sys.argv[2]) if len(sys.argv) > 2 else 19)
 HERE = pathlib.Path(__file__).resolve().parent.parent / "crates/contrapposto-formats/tests/data/opensim_wraps.json"

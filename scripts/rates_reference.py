@@ -19,6 +19,7 @@ import opensim
 TESTS = pathlib.Path(__file__).resolve().parent.parent / "crates/contrapposto-formats/tests"
 CUTOFF = 6.0
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 
 
 def write_table(path, times, columns, degrees=False):

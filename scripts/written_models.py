@@ -29,6 +29,7 @@ MODELS = [(2, "right_arm", "hand_r", "humerus_r"), (3, "hinges_and_slides", "h",
 POSTURES = 2
 WORLD = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 
 
 def lists(values):

@@ -246,6 +246,10 @@ const FAR: f64 = std::f64::consts::FRAC_PI_2;
 /// straight in half of them. Assumed.
 const OFTEN: f64 = 0.25;
 
+/// Values above this, rad or m, that a smaller unit would lay into the range of their coordinate, are in that unit (assumed: two turns; no laboratory is
+/// so large).
+const LIKELY_UNIT: f64 = 12.0;
+
 /// Notes the coordinates that leave their range, and those that leave the range of their built-in curve. Gives a warning for each whose
 /// values lie outside its range in nearly all frames: a wrong sign, unit or zero.
 pub(crate) fn note_values_out_of_range(
@@ -275,8 +279,8 @@ pub(crate) fn note_values_out_of_range(
         }
     }
     for (names, what) in [
-        (beyond, "outside their range in some frame"),
-        (held, "outside the range of their built-in curve in some frame, passive torque held at its limit"),
+        (beyond, "outside their range at some time"),
+        (held, "outside the range of their built-in curve at some time, passive torque held at its limit"),
     ] {
         if !names.is_empty() {
             notes.insert(0, format!("{what}: {}", first_of(&names)));
@@ -318,13 +322,18 @@ fn out_of_range(coordinate: &Coordinate, values: &[f64], outside: f64) -> String
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)));
     let [min, max] = [coordinate.range.0, coordinate.range.1].map(shown);
     let fits = 1.0 - share_outside(values.iter().map(|value| -value), coordinate.range);
+    let share_inside = |scale: f64| 1.0 - share_outside(values.iter().map(|value| scale * value), coordinate.range);
+    let smaller = if unit == "m" { 1e-3 } else { 1f64.to_radians() };
     let opposite = if fits >= NEARLY_ALL {
-        format!("; opposite sign? With it {:.0} % of the frames lie inside", 100.0 * fits)
+        format!("; opposite sign? With it {:.0} % of the time lie inside", 100.0 * fits)
+    } else if least.abs().max(greatest.abs()) > LIKELY_UNIT && share_inside(smaller) >= NEARLY_ALL {
+        let meant = if unit == "m" { "millimetres" } else { "degrees, taken for radians" };
+        format!("; are its values in {meant}?")
     } else {
         String::new()
     };
     format!(
-        "`{}` lies outside its range {min} .. {max} {unit} in {:.0} % of the frames ({} .. {} {unit}){opposite}",
+        "`{}` lies outside its range {min} .. {max} {unit} in {:.0} % of the time ({} .. {} {unit}){opposite}",
         coordinate.name,
         100.0 * outside,
         shown(least),

@@ -215,7 +215,7 @@ fn centers(model: &Model, frames: &[(f64, Posture)]) -> Vec<nalgebra::Vector3<f6
 fn fast((acceleration, share): (Peak, f64)) -> Option<String> {
     (share > FAST_SHARE).then(|| {
         format!(
-            "the centre of mass accelerates by more than 1 m/s2 in {:.0} percent of the frames (at most {:.1}, at {} s)",
+            "the centre of mass accelerates by more than 1 m/s2 in {:.0} percent of the time (at most {:.1}, at {} s)",
             100.0 * share,
             acceleration.value,
             acceleration.time

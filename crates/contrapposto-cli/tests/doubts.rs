@@ -4,6 +4,7 @@
 
 mod support;
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use contrapposto::statics::{ExternalTorque, FixedIn, Load, LoadKind};
@@ -69,7 +70,7 @@ fn a_motion_with_the_opposite_sign_is_warned_of_first_and_in_the_json() {
     let first = run.stderr.lines().next().unwrap();
     assert!(first.starts_with("warning: `knee_angle_r` lies outside its range"), "{}", run.stderr);
     assert!(
-        first.contains("in 100 % of the frames (-70.0 .. -60.0 deg); opposite sign? With it 100 % of the frames"),
+        first.contains("in 100 % of the time (-70.0 .. -60.0 deg); opposite sign? With it 100 % of the time"),
         "{first}"
     );
     let report: Value = serde_json::from_str(&run.stdout).unwrap();
@@ -95,7 +96,7 @@ fn a_load_of_many_times_the_strength_is_told_in_words_with_the_joints_out_of_ran
     for (knee, doubt) in [
         (
             "-60",
-            "check the sign of right knee (knee_angle_r), which is outside of its range in 100\u{a0}% of the frames.",
+            "check the sign of right knee (knee_angle_r), which is outside of its range in 100\u{a0}% of the time.",
         ),
         ("60", "check the signs and units of angles and loads."),
     ] {
@@ -261,6 +262,116 @@ fn external(folder: &Path, more: &str) -> String {
          <datafile>forces.csv</datafile></ExternalLoads></OpenSimDocument>"
     );
     write(folder, "external.xml", &text)
+}
+
+/// Force tables of a stride in which the right foot stands, then the left one: each force in its place, with sides swapped in both or one of the
+/// plates, with points in mm, and without a place.
+fn stride() -> [(&'static str, String, String); 5] {
+    let model = contrapposto::model::adult(&contrapposto::model::Adult::default()).unwrap();
+    let mut body = contrapposto::kinematics::Kinematics::new(&model);
+    let [hip_r, hip_l, knee_r, knee_l] =
+        ["hip_flexion_r", "hip_flexion_l", "knee_angle_r", "knee_angle_l"].map(|name| model.coordinate(name).unwrap());
+    let feet = ["calcn_r", "calcn_l"].map(|name| model.segment(name).unwrap());
+    let mut motion = "time,hip_flexion_r_deg,hip_flexion_l_deg,knee_angle_r_deg,knee_angle_l_deg\n".to_owned();
+    let mut tables = [const { String::new() }; 4];
+    for i in 0..=40 {
+        let (time, stands) = (0.025 * f64::from(i), usize::from(i > 20));
+        let bent = [[5.0, 35.0], [35.0, 5.0]][stands];
+        let straight = [[2.0, 50.0], [50.0, 2.0]][stands];
+        let _ = writeln!(motion, "{time},{},{},{},{}", bent[0], bent[1], straight[0], straight[1]);
+        let mut posture = model.default_posture();
+        for (coordinate, angle) in [(hip_r, bent[0]), (hip_l, bent[1]), (knee_r, straight[0]), (knee_l, straight[1])] {
+            posture.values_mut()[coordinate] = f64::to_radians(angle);
+        }
+        body.update(&model, &posture).unwrap();
+        let foot = body.station(&model, feet[stands], model.segments()[feet[stands]].center_of_mass);
+        let (carries, idle) = ([0.0, 700.0, 0.0, foot.x, 0.0, foot.z], [0.0; 6]);
+        let in_mm = [0.0, 700.0, 0.0, 1e3 * foot.x, 0.0, 1e3 * foot.z];
+        let right = |at| if stands == 0 { [at, idle] } else { [idle, at] };
+        for (table, [a, b]) in tables.iter_mut().zip([
+            right(carries),
+            [right(carries)[1], right(carries)[0]],
+            right(in_mm),
+            right(carries),
+        ]) {
+            let row: Vec<String> = a.iter().chain(&b).map(ToString::to_string).collect();
+            let _ = writeln!(table, "{time},{}", row.join(","));
+        }
+    }
+    let names = |plate: u8| FORCES.split(',').map(|name| format!("{plate}_{name}")).collect::<Vec<_>>().join(",");
+    let head = format!("time,{},{}\n", names(1), names(2));
+    let [plain, swapped, millimetres, nowhere] = tables.map(|rows| format!("{head}{rows}"));
+    let on = |first: &str, second: &str, point: bool| {
+        let force = |plate: u8, foot: &str| {
+            let point = if point {
+                format!("<point_identifier>{plate}_ground_force_p</point_identifier>")
+            } else {
+                String::new()
+            };
+            format!(
+                "<ExternalForce name=\"f{plate}\"><applied_to_body>{foot}</applied_to_body><force_identifier>{plate}_ground_force_v</force_identifier>\
+                 {point}</ExternalForce>"
+            )
+        };
+        let (first, second) = (force(1, first), force(2, second));
+        format!("<ExternalLoads><datafile>forces.csv</datafile><objects>{first}{second}</objects></ExternalLoads>")
+    };
+    let (straight, crossed) = (on("calcn_r", "calcn_l", true), on("calcn_l", "calcn_r", false));
+    [
+        ("plain", plain, straight.clone()),
+        ("swapped", swapped, straight.clone()),
+        ("mm", millimetres, straight.clone()),
+        ("nowhere", nowhere, crossed),
+        ("motion", motion, String::new()),
+    ]
+}
+
+#[test]
+fn forces_of_the_other_side_in_mm_or_on_a_foot_in_the_air_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = stride();
+    let motion = write(folder.path(), "motion.csv", &cases[4].1);
+    for ((name, table, loads), (doubt, also)) in cases.iter().take(4).zip([
+        ("", ""),
+        ("left and right seem to be swapped in the forces of", "those on `calcn_r` act "),
+        ("the forces on `calcn_r` act ", "are their points in mm?"),
+        ("left and right seem to be swapped in the forces of", "`calcn_l` carries the body alone while it is "),
+    ]) {
+        write(folder.path(), "forces.csv", table);
+        let loads = write(folder.path(), "loads.xml", loads);
+        for command in ["assess", "torques"] {
+            let said = run(&[command, "adult", &motion, "--grf", &loads, "--static"]).stderr;
+            if doubt.is_empty() {
+                assert!(!said.contains("swapped") && !said.contains("away from it"), "{name}: {said}");
+            } else {
+                let warned = said
+                    .lines()
+                    .any(|line| line.starts_with("warning: ") && line.contains(doubt) && line.contains(also));
+                assert!(warned, "{command}, {name}: {said}");
+            }
+        }
+        if *name == "swapped" {
+            let answer = run(&["assess", "adult", &motion, "--grf", &loads, "--static", "--json"]);
+            let report: Value = serde_json::from_str(&answer.stdout).unwrap();
+            assert!(report["warnings"][0].as_str().unwrap().starts_with(doubt), "{}", report["warnings"]);
+        }
+    }
+}
+
+/// A pelvis in mm, and an angle in degrees in a table of radians, are named as such.
+#[test]
+fn coordinates_in_another_unit_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let far = write(folder.path(), "far.csv", "time,pelvis_ty_m\n0,930\n1,931\n");
+    let said = run(&["torques", "adult", &far]).stderr;
+    assert!(
+        said.contains("`pelvis_ty` lies outside its range") && said.contains("are its values in millimetres?"),
+        "{said}"
+    );
+    let wide = write(folder.path(), "wide.csv", "time,knee_angle_r\n0,60\n1,70\n");
+    let said = run(&["torques", "adult", &wide, "--radians"]).stderr;
+    assert!(said.contains("are its values in degrees, taken for radians?"), "{said}");
+    assert!(!run(&["torques", "adult", &wide, "--degrees"]).stderr.contains("outside its range"));
 }
 
 #[test]
@@ -574,7 +685,7 @@ fn a_foot_in_the_air_that_is_named_as_a_support_gives_a_warning_with_its_height(
     let warning = run.stderr.lines().find(|line| line.contains("support `calcn_r` is ")).unwrap();
     let height: f64 = warning.split("is ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     // The thigh of the adult is level, its shank hangs: the foot is about a thigh's length up.
-    assert!((30.0..50.0).contains(&height) && warning.contains("100 % of the frames"), "{warning}");
+    assert!((30.0..50.0).contains(&height) && warning.contains("100 % of the time"), "{warning}");
     assert!(!run.stderr.contains("support `calcn_l` is "), "{}", run.stderr);
 }
 

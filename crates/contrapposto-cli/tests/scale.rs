@@ -211,7 +211,14 @@ fn what_is_wrong_is_told_by_name() {
     let text = with(&["--measure", "thigh=femur_r.o:femur_r"]);
     assert!(text.contains("`femur_r.o` is no pair of markers") && text.contains("NAME=MARKER,MARKER:BODY"), "{text}");
     let unit = with(&["--measure", "thigh=femur_r.o,femur_r.y:femur_r", "--units", "m"]);
-    assert!(unit.contains("0.01 to 100 is accepted; do the units of the markers fit?"), "{unit}");
+    assert!(unit.contains("are they in mm? --units mm reads them so; no model is written"), "{unit}");
+    // One marker of the model far from its place.
+    let (before, after) = bench.text.split_once("<Marker name=\"femur_r.y\"").unwrap();
+    let near = format!("{before}<Marker name=\"femur_r.y\"{}", after.replacen("0.01 0.23 0.03", "0.01 0.0201 0.03", 1));
+    let near = write(bench.folder.path(), "near.osim", &near);
+    let measure = ["--measure", "thigh=femur_r.o,femur_r.y:femur_r"];
+    let factor = refused(&[&["scale", &near, &bench.trial, "--out", out], &measure[..]].concat());
+    assert!(factor.contains("0.01 to 100 is accepted; do the units of the markers fit?"), "{factor}");
     let time = with(&["--measure", "thigh=femur_r.o,femur_r.y:femur_r", "--from", "5"]);
     assert!(
         time.contains("no frame lies in the time that is asked for (from 5 s); it goes from 0 s to 0.2 s"),
@@ -234,6 +241,54 @@ fn what_is_wrong_is_told_by_name() {
     assert_eq!(answer.code, 0, "{}", answer.stderr);
     assert!(answer.stderr.contains("measurement `femur_rx` is not used: "), "{}", answer.stderr);
     assert!(answer.stderr.contains("has no body `torsoo`; did you mean `torso`?"), "{}", answer.stderr);
+}
+
+/// Markers on both sides of our own woman.
+fn woman_with_two_sides() -> String {
+    let (mut text, mut markers) = (marked_woman(), String::new());
+    text.truncate(text.rfind("<MarkerSet").unwrap());
+    for (side, sign, letter) in [('R', 1.0, 'r'), ('L', -1.0, 'l')] {
+        let [femur, tibia, foot] = ["femur", "tibia", "calcn"].map(|body| format!("{body}_{letter}"));
+        for (name, body, [x, y, z]) in [
+            ("ASIS", "pelvis", [0.1, 0.05, 0.12]),
+            ("PSIS", "pelvis", [-0.1, 0.06, 0.04]),
+            ("Knee", &*femur, [0.02, -0.38, 0.05]),
+            ("Shin", &*tibia, [0.04, -0.2, 0.01]),
+            ("Ankle", &*tibia, [0.0, -0.38, 0.05]),
+            ("Toe", &*foot, [0.18, 0.0, 0.01]),
+        ] {
+            let _ = write!(
+                markers,
+                "<Marker name=\"{side}.{name}\"><socket_parent_frame>/bodyset/{body}</socket_parent_frame><location>{x} {y} {}</location></Marker>",
+                sign * z
+            );
+        }
+    }
+    format!("{text}<MarkerSet name=\"m\"><objects>{markers}</objects></MarkerSet></Model></OpenSimDocument>")
+}
+
+#[test]
+fn sides_that_are_swapped_in_the_static_trial_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = woman_with_two_sides();
+    let model = write(folder.path(), "woman.osim", &text);
+    let opened = opened(&text);
+    let plain = trial(&opened, &opened.model.default_posture());
+    let swapped = plain.replace("\tR.", "\tX.").replace("\tL.", "\tR.").replace("\tX.", "\tL.");
+    for (name, text, named) in [("plain.trc", &plain, false), ("swapped.trc", &swapped, true)] {
+        let markers = write(folder.path(), name, text);
+        let out = folder.path().join("out.osim");
+        let measure = "shank=R.Knee,R.Ankle;L.Knee,L.Ankle:tibia_r,tibia_l";
+        for more in [&[][..], &["--place-markers"]] {
+            let asked = ["scale", &model, &markers, "--out", out.to_str().unwrap(), "--measure", measure];
+            let answer = run(&[&asked, more].concat());
+            assert_eq!(answer.code, 0, "{}", answer.stderr);
+            let said = format!(
+                "warning: {markers}: left and right seem to be swapped in the names of the markers: with the 6 pairs"
+            );
+            assert_eq!(answer.stderr.contains(&said), named, "{}", answer.stderr);
+        }
+    }
 }
 
 #[test]

@@ -62,9 +62,14 @@ fn compare(place: &str) -> usize {
             inertia.update(&model, &kinematics, (&speeds, &accelerations), &[]).unwrap();
             external.update(&model, &kinematics, inertia.loads()).unwrap();
             let theirs = by_rate(&model, &case["torque"]);
+            // The torques of inertia added to those of weight: the same by one pass less.
+            let mut summed = ExternalTorque::new(&model);
+            inertia.external_torque(&model, &kinematics, &[], &mut summed).unwrap();
             let size = theirs.iter().fold(0f64, |size, torque| size.max(torque.abs()));
             let difference = external.torques().iter().zip(&theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(size > 1.0, "{}: no torque", reference["file"]);
+            let apart = external.torques().iter().zip(summed.torques()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < RELATIVE * size, "{}: {apart:e} N m of {size} between both ways", reference["file"]);
             (relative, largest) = (relative.max(difference / size), largest.max(difference));
             compared += 1;
         }

@@ -7,11 +7,14 @@ mod common;
 mod hostile;
 
 use common::next;
-use contrapposto::model::{Adult, CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, SegmentSpec, adult};
+use contrapposto::math::Function;
+use contrapposto::model::{
+    Adult, CoordinateKind, CoordinateSpec, Drive, JointKind, Model, ModelBuilder, Motion, SegmentSpec, adult,
+};
 use contrapposto_formats::InputError;
 use contrapposto_formats::motion::{
-    MOST_COLUMNS, MOST_NAME_BYTES, MOST_TABLE_BYTES, Table, Units, UnwritableTable, postures, read_table, write_csv,
-    write_sto,
+    MOST_COLUMNS, MOST_NAME_BYTES, MOST_TABLE_BYTES, Table, Units, UnwritableTable, opensim_columns, postures,
+    read_table, write_csv, write_sto,
 };
 use miette::Diagnostic;
 use nalgebra::{Isometry3, Matrix3, Vector3};
@@ -62,6 +65,50 @@ fn free() -> Model {
     };
     builder.segment(spec).unwrap();
     builder.build()
+}
+
+/// Hinges by a curve of their coordinate, by half of it, and by itself.
+fn driven() -> Model {
+    let axis = || Motion::Hinge(Vector3::z_axis());
+    let bent = Function::Polynomial(vec![0.1, 0.9, 0.2]);
+    let motions = vec![
+        (axis(), Drive::Function(bent, 0)),
+        (axis(), Drive::Function(Function::Linear { slope: 0.5, intercept: 0.0 }, 1)),
+        (axis(), Drive::Coordinate(2)),
+    ];
+    let mut builder = ModelBuilder::new("driven", Vector3::zeros());
+    let spec = SegmentSpec {
+        name: "patella".to_owned(),
+        parent: None,
+        mass: 1.0,
+        center_of_mass: Vector3::zeros(),
+        inertia: Matrix3::identity(),
+        joint: "knee".to_owned(),
+        kind: JointKind::Driven(motions),
+        in_parent: Isometry3::identity(),
+        in_segment: Isometry3::identity(),
+        coordinates: ["bent", "half", "plain"].map(|name| CoordinateSpec::new(name, (-2.0, 2.0))).to_vec(),
+    };
+    builder.segment(spec).unwrap();
+    builder.build()
+}
+
+/// OpenSim counts an angle that turns a body by a curve as "coupled", and its files have it in radians among degrees (as the patella's of
+/// Rajagopal2016: its inverse dynamics of a file in degrees was 350 N m off at the hip).
+#[test]
+fn angles_by_curves_stand_in_radians_among_degrees_as_opensim_has_them() {
+    let model = driven();
+    let columns = opensim_columns(&model);
+    assert_eq!(columns.iter().map(|column| column.1).collect::<Vec<_>>(), [Translation, Rotation, Rotation]);
+    let text = write_sto("m", &columns, true, &[0.0], &[[1.25, 0.5, -0.5]]).unwrap();
+    let row: Vec<f64> = text.lines().last().unwrap().split('\t').map(|cell| cell.parse().unwrap()).collect();
+    assert_eq!(row[1], 1.25);
+    assert!((row[2] - 0.5f64.to_degrees()).abs() < 1e-12 && (row[3] + 0.5f64.to_degrees()).abs() < 1e-12, "{row:?}");
+    let values =
+        |units| postures(&read(&text), "m", text.as_bytes(), &model, units).unwrap().postures[0].1.values().to_vec();
+    let back = values(Units::FromFile);
+    assert!(back[0] == 1.25 && (back[1] - 0.5).abs() < 1e-15 && (back[2] + 0.5).abs() < 1e-15, "{back:?}");
+    assert_eq!(values(Units::Degrees)[0], 1.25f64.to_radians(), "as the user says");
 }
 
 /// Message, help and place (line and column from 1) of a complaint.

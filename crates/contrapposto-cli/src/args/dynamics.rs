@@ -8,7 +8,7 @@ use contrapposto::dynamics::{PUBLISHED_CUTOFF, Smoothing};
 pub(crate) struct DynamicsArgs {
     /// Count inertia: the motion is filtered, its splines give speeds and accelerations, as OpenSim's inverse dynamics makes them. Without
     /// this and --static, inertia counts where the centre of mass accelerates by more than 1 m/s2, a tenth of gravity, in more than
-    /// 5 percent of the frames.
+    /// 5 percent of the time.
     #[arg(long, conflicts_with = "at_rest")]
     pub(crate) dynamics: bool,
     /// Leave inertia out: each posture is held at rest, and no motion is filtered.

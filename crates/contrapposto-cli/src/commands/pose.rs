@@ -8,7 +8,7 @@ use contrapposto::posture_solver::{Engine, EngineError, Options, Reason, SolvedP
 use contrapposto::suggestions::{Advice, Change, Job, Trial, changes};
 use contrapposto::tasks::{PriorityLevel, Task};
 use contrapposto::verdict::{HandLoad, HeldPosture, Missed, Verdict};
-use contrapposto_formats::motion::{write_csv, write_sto};
+use contrapposto_formats::motion::{opensim_columns, write_csv, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
 use contrapposto_plot::body_figure;
@@ -99,7 +99,8 @@ fn write(
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows = [pose.posture.values()];
     let title = if scenario.title.is_empty() { "pose" } else { &scenario.title };
-    let mot = write_sto(title, &columns, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
+    let of_mot = opensim_columns(&scenario.model);
+    let mot = write_sto(title, &of_mot, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
     let picture = body_figure(&pose_picture(scenario, (pose, muscles), &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);

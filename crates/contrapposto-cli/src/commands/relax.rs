@@ -9,7 +9,7 @@ use contrapposto::joint_torques::active_torque;
 use contrapposto::model::CoordinateKind;
 use contrapposto::suggestions::Advice;
 use contrapposto::verdict::{HeldPosture, Verdict};
-use contrapposto_formats::motion::{csv_cell, write_sto};
+use contrapposto_formats::motion::{csv_cell, opensim_columns, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RelaxScenario, read_relax};
 use contrapposto_plot::{BodyFigure, body_figure};
@@ -140,10 +140,10 @@ fn write(
     figures: &[(String, Vec<u8>)],
     (folder, wooden): (&ResultSet, bool),
 ) -> Result<(), Fail> {
-    let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows: Vec<&[f64]> = found.postures.iter().map(|posture| posture.relaxed.posture.values()).collect();
     let times: Vec<f64> = (0..rows.len()).map(|i| i as f64).collect();
     let title = if scenario.title.is_empty() { "postures of least effort" } else { &scenario.title };
+    let columns = opensim_columns(&scenario.model);
     let mot = write_sto(title, &columns, true, &times, &rows).map_err(|error| Fail::job("postures.mot", error))?;
     let csv = table(scenario, found);
     let picture = body_figure(&drawing(scenario, found, shown, text)?);

@@ -1,5 +1,6 @@
 //! `contrapposto scale`: a model of the size of a person, by the markers of a static trial.
 
+mod doubts;
 mod files;
 mod measured;
 mod placing;
@@ -21,7 +22,7 @@ use crate::fail::Fail;
 use crate::input::read;
 use crate::model_file::confined;
 use crate::output::{Folder, folder_and_name, print, print_note};
-use files::{opened, refused};
+use files::{frames, opened, refused, time_range};
 use measured::Measured;
 
 /// Largest mass of a person, kg (assumed: above all that live).
@@ -42,6 +43,8 @@ pub(crate) fn scale(args: &ScaleArgs) -> Result<(), Fail> {
     setup.notes.iter().for_each(|note| print_note("note", note));
     markers.warnings.iter().for_each(|warning| print_note("warning", warning));
     let before = opened(&shown, &text)?;
+    let averaged = frames(&markers, &name, time_range(args, setup.time_range))?;
+    doubts::refuse_other_unit(&before, (&markers, &name), averaged.clone())?;
     let measured = Measured::new(args, &setup, (&before, &bodies), (&markers, &name))?;
     let scaling = Scaling {
         factors: measured.factors.clone(),
@@ -50,6 +53,8 @@ pub(crate) fn scale(args: &ScaleArgs) -> Result<(), Fail> {
         name: setup.name.clone(),
     };
     let scaled = scaled(&shown, &text, &before, &scaling)?;
+    let swapped = doubts::sides(&opened(&shown, &scaled)?, (&markers, &name), setup.placing.as_ref(), averaged);
+    swapped.iter().for_each(|warning| print_note("warning", warning));
     let mut answer = first_line(args, &before, (&measured, bodies.len()), &scaled)?;
     let text = if setup.placing.is_some() || args.place_markers {
         let placed = placing::place(args, &setup, &scaled, (&markers, &name))?;

@@ -42,7 +42,8 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     let (loads, ground) = loads_of(&args.under, model, &recorded.frames, &mut notes)?;
     keep_overlap(&mut recorded, ground.as_ref())?;
     let warnings = note_values_out_of_range(&opened, &recorded.frames, &mut notes);
-    recorded.doubts.iter().chain(&warnings).for_each(|warning| print_note("warning", warning));
+    let of_forces: Vec<String> = ground.iter().flat_map(|ground| ground.doubts(model, &recorded.frames)).collect();
+    of_forces.iter().chain(&recorded.doubts).chain(&warnings).for_each(|warning| print_note("warning", warning));
     let job = Job { opened, muscles, recorded, loads, ground, gradient: args.gradient };
     job.check()?;
     job.recorded.said.iter().for_each(|said| print_note("note", said));
@@ -137,9 +138,9 @@ impl Job {
         let mut body = self.body();
         let mut centers = vec![];
         let quantities = Quantities { passive_torque: true, ..Quantities::default() };
-        for (frame, (_, posture)) in self.recorded.frames.iter().enumerate() {
+        for (time, posture) in &self.recorded.frames {
             body.update(&self.opened.model, posture, &[], quantities)
-                .map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
+                .map_err(|why| Fail::Refused(format!("at {time} s: {why}")))?;
             centers.extend(body.kinematics().center_of_mass(&self.opened.model));
         }
         if self.recorded.rates.is_empty()
@@ -164,7 +165,7 @@ impl Job {
         let mut loads = vec![];
         let mut inertia = Inertia::new(model);
         for (index, (time, posture)) in self.recorded.frames.iter().enumerate() {
-            let failed = |why: JointTorquesError| Fail::Refused(format!("frame {index}: {why}"));
+            let failed = |why: JointTorquesError| Fail::Refused(format!("at {time} s: {why}"));
             body.place(model, posture).map_err(|error| failed(error.into()))?;
             loads.clone_from(&self.loads);
             if let Some(ground) = &self.ground {
@@ -174,10 +175,11 @@ impl Job {
             if let Some(rates) = rates {
                 let given = (rates.speeds.as_slice(), rates.accelerations.as_slice());
                 let update = inertia.update(model, body.kinematics(), given, &loads);
-                update.map_err(|why| Fail::Refused(format!("frame {index}: {why}")))?;
-                loads.extend_from_slice(inertia.loads());
+                update.map_err(|why| Fail::Refused(format!("at {time} s: {why}")))?;
+                body.apply_moving(model, &loads, &inertia, quantities).map_err(failed)?;
+            } else {
+                body.apply(model, &loads, quantities).map_err(failed)?;
             }
-            body.apply(model, &loads, quantities).map_err(failed)?;
             if let Some(muscles) = body.muscles() {
                 muscles.write_strength(&mut posed.model);
             }

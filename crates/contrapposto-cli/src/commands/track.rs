@@ -1,13 +1,13 @@
 //! `contrapposto track`: the motion of a model whose markers lie nearest to measured ones.
 
-mod doubts;
+pub(crate) mod doubts;
 pub(crate) mod matching;
 
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::tracking::{self, Goals, TrackedFrame, TrackingError};
 use contrapposto_formats::markers::{Markers, TrackingTasks, read_markers, tracking_tasks, turn_upright};
-use contrapposto_formats::motion::{MOST_TABLE_BYTES, UnwritableTable, write_sto};
+use contrapposto_formats::motion::{MOST_TABLE_BYTES, UnwritableTable, opensim_columns, write_sto};
 use contrapposto_formats::xml::Limits;
 
 use crate::args::{TrackArgs, UpChoice};
@@ -150,9 +150,8 @@ pub(super) fn asked(from: Option<f64>, to: Option<f64>) -> String {
 }
 
 pub(super) fn motion(model: &Model, times: &[f64], tracked: &[TrackedFrame]) -> Result<String, UnwritableTable> {
-    let columns: Vec<(&str, CoordinateKind)> = model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows: Vec<&[f64]> = tracked.iter().map(|frame| frame.posture.values()).collect();
-    write_sto("Coordinates", &columns, true, times, &rows)
+    write_sto("Coordinates", &opensim_columns(model), true, times, &rows)
 }
 
 /// The table that OpenSim's tool writes.

@@ -8,8 +8,8 @@ use crate::view::torque_rows::{Frame, Order};
 pub(crate) struct Residual {
     /// Joint's name, its slides and its turns, by `Order::rows`.
     roots: Vec<(String, Vec<usize>, Vec<usize>)>,
-    /// By root: force (N), moment (N m), frame.
-    largest: Vec<[(f64, usize); 2]>,
+    /// By root: force (N) and moment (N m), each with its time, s.
+    largest: Vec<[(f64, f64); 2]>,
 }
 
 impl Residual {
@@ -35,7 +35,7 @@ impl Residual {
                 roots.push((segment.joint.clone(), rows(&slides), rows(&turns)));
             }
         }
-        let largest = vec![[(0.0, 0); 2]; roots.len()];
+        let largest = vec![[(0.0, 0.0); 2]; roots.len()];
         Self { roots, largest }
     }
 
@@ -45,7 +45,7 @@ impl Residual {
             for (rows, largest) in [slides, turns].into_iter().zip(largest) {
                 let size = size(rows);
                 if size > largest.0 {
-                    *largest = (size, frame.index);
+                    *largest = (size, frame.time);
                 }
             }
         }
@@ -59,8 +59,7 @@ impl Residual {
         if *force < 1e-6 * weight.max(1.0) && *moment < 1e-6 * weight.max(1.0) {
             return None;
         }
-        let residual =
-            format!("residual force {force:.2} N (frame {at_force}), moment {moment:.2} N m (frame {at_moment})");
+        let residual = format!("residual force {force:.2} N at {at_force} s, moment {moment:.2} N m at {at_moment} s");
         Some(if grounded {
             ("note", format!("`{joint}` still carries a residual that muscles cannot give: {residual}"))
         } else {

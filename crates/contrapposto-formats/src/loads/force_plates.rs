@@ -10,7 +10,7 @@ use crate::markers::{ForcePlate, ForcePlates, LEAST_FORCE};
 use crate::motion::Table;
 
 /// Greatest mean distance of the centre of pressure from the centre of mass of the foot that stands on the plate, measured along the floor, m (assumed: a long foot).
-const GREATEST_DISTANCE: f64 = 0.3;
+pub(super) const GREATEST_DISTANCE: f64 = 0.3;
 /// Pauses in a stance up to this, s, do not end it (assumed).
 const SHORT: f64 = 0.05;
 /// Names of feet.

@@ -113,14 +113,14 @@ type Three = [usize; 3];
 
 #[derive(Clone, Debug)]
 pub(super) struct Plate {
-    segment: usize,
+    pub(super) segment: usize,
     force: Option<Three>,
     /// None: the segment's origin.
-    point: Option<Three>,
+    pub(super) point: Option<Three>,
     couple: Option<Three>,
     /// The segment in whose axes force and couple are measured, and the one in whose frame the point is; ground where there is none.
     force_in: Option<usize>,
-    point_in: Option<usize>,
+    pub(super) point_in: Option<usize>,
 }
 
 impl Plate {
@@ -238,6 +238,10 @@ impl GroundReaction {
     /// Sentences that say what the force plates of a C3D file act on.
     pub fn assigned(&self) -> &[String] {
         &self.assigned
+    }
+
+    pub(super) fn plates(&self) -> &[Plate] {
+        &self.plates
     }
 
     /// Faults of a table that can be read nevertheless.

@@ -1,6 +1,7 @@
 //! Loads on a body from texts and measured tables: held weights, forces, and ground reactions.
 
 mod external_loads;
+mod force_doubts;
 mod force_plates;
 mod ground_reaction;
 mod text;

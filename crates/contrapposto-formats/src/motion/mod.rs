@@ -13,7 +13,7 @@ mod write;
 pub use postures::{Postures, Units, postures};
 pub use read::read_table;
 pub(crate) use write::plain;
-pub use write::{UnwritableTable, csv_cell, write_csv, write_sto};
+pub use write::{UnwritableTable, csv_cell, opensim_columns, write_csv, write_sto};
 
 /// Largest table file, bytes.
 pub const MOST_TABLE_BYTES: usize = 64 << 20;

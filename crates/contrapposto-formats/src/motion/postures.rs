@@ -252,7 +252,10 @@ impl<'a> Job<'a> {
         let about = &self.model.coordinates()[column.coordinate];
         let given = self.table.rows[row][column.index];
         let rotation = about.kind == CoordinateKind::Rotation;
-        let degrees = rotation && (unit == Unit::Degrees || (unit == Unit::File && self.degrees == Some(true)));
+        // OpenSim's files have such angles in radians, whatever the header says.
+        let as_is = self.units == Units::FromFile && self.model.turns_by_curves(column.coordinate);
+        let degrees =
+            rotation && (unit == Unit::Degrees || (unit == Unit::File && self.degrees == Some(true) && !as_is));
         let value = if degrees { given.to_radians() } else { given };
         if value.is_nan() || value.abs() > LARGEST {
             let help = format!("at most {LARGEST:e} rad or m");

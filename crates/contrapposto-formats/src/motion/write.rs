@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::fmt::Write;
 
-use contrapposto::model::CoordinateKind;
+use contrapposto::model::{CoordinateKind, Model};
 
 use super::MOST_NAME_BYTES;
 
@@ -43,6 +43,13 @@ pub enum UnwritableTable {
     /// A label twice, too long, or `time`.
     #[error("the column name `{0}` stands twice, is `time` or has more than {MOST_NAME_BYTES} bytes")]
     Name(String),
+}
+
+/// Name and kind of every coordinate, as [`write_sto`] takes them. A rotation by a curve of its coordinate is none for OpenSim, which reads and writes
+/// its values in radians; here it stands as a length, which is written as it is.
+pub fn opensim_columns(model: &Model) -> Vec<(&str, CoordinateKind)> {
+    let kind = |i: usize, kind| if model.turns_by_curves(i) { CoordinateKind::Translation } else { kind };
+    model.coordinates().iter().enumerate().map(|(i, c)| (c.name.as_str(), kind(i, c.kind))).collect()
 }
 
 /// A `.sto` or `.mot` table as OpenSim reads it: name, `version=1`, `nRows`, `nColumns`, `inDegrees`, `endheader`, labels and

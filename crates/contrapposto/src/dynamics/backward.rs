@@ -18,7 +18,8 @@ pub(super) struct Wrench {
 pub(super) struct WrenchTorques {
     /// Force and moment at and beyond each mobility.
     sums: Vec<(Vector3<f64>, Vector3<f64>)>,
-    elements: Vec<f64>,
+    /// By elementary rate.
+    pub(super) elements: Vec<f64>,
     /// By rate, nothing coupled.
     pub(super) raw: Vec<f64>,
     /// By rate, dependent coordinates folded into their independent ones.

@@ -6,7 +6,7 @@ use super::acceleration::{Acceleration, SpeedError};
 use super::backward::{Wrench, WrenchTorques};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
-use crate::statics::{FixedIn, Load, LoadError, LoadKind};
+use crate::statics::{ExternalTorque, FixedIn, Load, LoadError, LoadKind};
 
 /// The reason for which the inertia of a body is not known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -37,6 +37,7 @@ struct Body {
 pub struct Inertia {
     bodies: Vec<Body>,
     acceleration: Acceleration,
+    /// Force, then couple of each body; then the forces of held weights.
     loads: Vec<Load>,
     /// The same forces and couples about the ground origin.
     wrenches: Vec<Wrench>,
@@ -57,10 +58,17 @@ impl Inertia {
             let counts = of.mass > 0.0 || inertia != Matrix3::zeros();
             counts.then_some(Body { segment, mobility, mass: of.mass, center, inertia })
         };
+        let bodies: Vec<Body> = (0..model.segments.len()).filter_map(body).collect();
+        let load = |segment: usize, kind| Load { segment, point: model.segments[segment].center_of_mass, kind };
+        let none = Vector3::zeros();
+        let of_body = |body: &Body| {
+            [LoadKind::Force(none, FixedIn::World), LoadKind::Couple(none, FixedIn::World)]
+                .map(|kind| load(body.segment, kind))
+        };
         Self {
-            bodies: (0..model.segments.len()).filter_map(body).collect(),
+            loads: bodies.iter().flat_map(of_body).collect(),
+            bodies,
             acceleration: Acceleration::new(model),
-            loads: vec![],
             wrenches: vec![],
             torque: WrenchTorques::new(model),
             about_axes: (!model.three_axis_joints().is_empty()).then(|| WrenchTorques::new(model.by_axes())),
@@ -80,13 +88,12 @@ impl Inertia {
         held: &[Load],
     ) -> Result<(), InertiaError> {
         self.acceleration.update(model, kinematics, speeds, accelerations)?;
-        self.loads.clear();
+        self.loads.truncate(2 * self.bodies.len());
         self.wrenches.clear();
-        for body in &self.bodies {
+        for (body, loads) in self.bodies.iter().zip(self.loads.chunks_exact_mut(2)) {
             let (force, couple, arm) = self.acceleration.inertia(kinematics, body);
-            let load = |kind| Load { segment: body.segment, point: model.segments[body.segment].center_of_mass, kind };
-            self.loads.push(load(LoadKind::Force(force, FixedIn::World)));
-            self.loads.push(load(LoadKind::Couple(couple, FixedIn::World)));
+            loads[0].kind = LoadKind::Force(force, FixedIn::World);
+            loads[1].kind = LoadKind::Couple(couple, FixedIn::World);
             let moment = (kinematics.origins[body.mobility] + arm).cross(&force) + couple;
             self.wrenches.push(Wrench { segment: body.segment, force, moment });
         }
@@ -129,6 +136,21 @@ impl Inertia {
         &self.torque.torques
     }
 
+    /// Inverse dynamics: external torque of gravity, `loads` and the inertia of the last update, in the same posture. Gradient and slopes of
+    /// `external` are those of gravity and `loads` alone. Does not allocate.
+    ///
+    /// # Errors
+    /// [`LoadError`] when a load does not fit the model; nothing is changed then.
+    pub fn external_torque(
+        &self,
+        model: &Model,
+        kinematics: &Kinematics,
+        loads: &[Load],
+        external: &mut ExternalTorque,
+    ) -> Result<(), LoadError> {
+        external.update_with(model, kinematics, loads, &self.torque.elements)
+    }
+
     /// As [`Inertia::torques`], but as if no coordinate followed another one.
     pub fn uncoupled_torques<'a>(&'a self, model: &Model) -> &'a [f64] {
         if model.direct { &self.torque.torques } else { &self.torque.raw }
@@ -148,7 +170,9 @@ impl Acceleration {
         let (omega, alpha) = (self.omega[*mobility], self.alpha[*mobility]);
         let arm = rotation * center;
         let force = -*mass * (self.origin[*mobility] + alpha.cross(&arm) + omega.cross(&omega.cross(&arm)));
-        let in_ground = |v: &Vector3<f64>| rotation * (inertia * rotation.tr_mul(v));
-        (force, -(in_ground(&alpha) + omega.cross(&in_ground(&omega))), arm)
+        // The couple in the axes of the mobility, in which the inertia stays.
+        let (turn, change) = (rotation.tr_mul(&omega), rotation.tr_mul(&alpha));
+        let couple = inertia * change + turn.cross(&(inertia * turn));
+        (force, -(rotation * couple), arm)
     }
 }

@@ -21,11 +21,13 @@ mod about_axes;
 mod group_load;
 mod hazard;
 mod hip_tract;
+mod moving;
 mod muscle_laws;
 mod muscle_share;
 mod muscle_tables;
 mod muscle_work;
 mod muscles;
+mod quantities;
 
 pub use about_axes::AboutAxes;
 pub use group_load::{GroupLoad, relative_load};
@@ -37,8 +39,10 @@ pub use muscle_share::{MuscleShare, MuscleShareError};
 pub use muscle_tables::RESTING_ACTIVATION;
 pub use muscle_work::{MissingTorque, MuscleWork, MuscleWorkError};
 pub use muscles::{JointMuscles, JointMusclesError, LEAST_MUSCLE_STRENGTH};
+pub use quantities::Quantities;
 
 use crate::contact::ContactForces;
+use crate::dynamics::Inertia;
 use crate::kinematics::{CenterOfMass, Kinematics};
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
@@ -53,45 +57,6 @@ pub fn active_torque(external: f64, passive: f64) -> f64 {
 /// Effort: the sum of squares of relative loads, or of errors of effort tasks, which are relative loads with a sign.
 pub fn effort(loads: &[f64]) -> f64 {
     loads.iter().fold(0.0, |sum, load| sum + load * load)
-}
-
-/// The quantities that an update computes beyond frames and axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Quantities {
-    /// The centre of mass.
-    pub center_of_mass: bool,
-    /// External torque.
-    pub external_torque: bool,
-    /// External torque and its gradient.
-    pub gradient: bool,
-    /// Passive torque; with external torque, active torque and all torques about axes, too.
-    pub passive_torque: bool,
-}
-
-impl Quantities {
-    /// All of them.
-    pub const ALL: Self = Self { center_of_mass: true, external_torque: true, gradient: true, passive_torque: true };
-    /// External, passive and active torque, without the gradient.
-    pub const TORQUES: Self = Self { center_of_mass: false, gradient: false, ..Self::ALL };
-
-    /// The quantities of both selections together.
-    #[must_use]
-    pub fn with(self, other: Self) -> Self {
-        Self {
-            center_of_mass: self.center_of_mass || other.center_of_mass,
-            external_torque: self.external_torque || other.external_torque,
-            gradient: self.gradient || other.gradient,
-            passive_torque: self.passive_torque || other.passive_torque,
-        }
-    }
-
-    fn needs_external_torque(self) -> bool {
-        self.external_torque || self.gradient
-    }
-
-    fn about_axes(self) -> bool {
-        self.passive_torque && self.needs_external_torque()
-    }
 }
 
 /// The reason for which a posture or a load was refused.
@@ -222,6 +187,12 @@ impl JointTorques {
     /// # Errors
     /// As [`JointTorques::update`].
     pub fn apply(&mut self, model: &Model, loads: &[Load], quantities: Quantities) -> Result<(), JointTorquesError> {
+        self.begin(model, loads, quantities)?;
+        self.finish(model, quantities, None)
+    }
+
+    /// Takes the loads, and computes passive torque.
+    fn begin(&mut self, model: &Model, loads: &[Load], quantities: Quantities) -> Result<(), JointTorquesError> {
         self.loads.clear();
         self.loads.extend_from_slice(loads);
         self.computed = Quantities::default();
@@ -232,7 +203,7 @@ impl JointTorques {
                 self.passive.add(of_coordinates, about_axes);
             }
         }
-        self.finish(model, quantities)
+        Ok(())
     }
 
     /// As [`JointTorques::apply`], with the contact forces among the loads that keep the root in equilibrium at least effort; they
@@ -250,13 +221,21 @@ impl JointTorques {
         self.apply(model, loads, Quantities::TORQUES)?;
         contact.update(model, self.kinematics_by_axes(), self.passive.angles(), &self.active);
         self.loads.extend_from_slice(contact.loads());
-        self.finish(model, Quantities::TORQUES.with(quantities))
+        self.finish(model, Quantities::TORQUES.with(quantities), None)
     }
 
-    /// Computes the external torque of `self.loads` and the quantities that depend on it.
-    fn finish(&mut self, model: &Model, quantities: Quantities) -> Result<(), JointTorquesError> {
+    /// Computes the external torque of `self.loads` and of `inertia`, and the quantities that depend on it.
+    fn finish(
+        &mut self,
+        model: &Model,
+        quantities: Quantities,
+        inertia: Option<&Inertia>,
+    ) -> Result<(), JointTorquesError> {
         if quantities.needs_external_torque() {
-            self.external.update(model, &self.kinematics, &self.loads)?;
+            match inertia {
+                Some(inertia) => inertia.external_torque(model, &self.kinematics, &self.loads, &mut self.external)?,
+                None => self.external.update(model, &self.kinematics, &self.loads)?,
+            }
         } else if quantities.center_of_mass {
             self.center_of_mass.update(model, &self.kinematics);
         }

@@ -320,6 +320,21 @@ impl Model {
         self.couplings.iter().any(|coupling| coupling.dependent == coordinate)
     }
 
+    /// Whether the coordinate turns segments only by functions of it that are no straight lines: OpenSim's motion type "coupled", whose values its
+    /// files have in radians even where angles are in degrees.
+    pub fn turns_by_curves(&self, coordinate: usize) -> bool {
+        let by_curve = |mobility: &Mobility| match (&mobility.motion, &mobility.drive) {
+            (Motion::Slide(_), _) => None,
+            (_, Drive::Coordinate(c)) => (*c == coordinate).then_some(false),
+            (_, Drive::Function(function, c)) => {
+                (*c == coordinate).then_some(!matches!(function, Function::Linear { .. }))
+            }
+            (_, Drive::Fixed(_)) => None,
+        };
+        let mut turns = self.mobilities.iter().filter_map(by_curve).peekable();
+        turns.peek().is_some() && turns.all(|by_curve| by_curve)
+    }
+
     /// Total mass, kg.
     pub fn mass(&self) -> f64 {
         self.segments.iter().map(|s| s.mass).sum()

@@ -82,6 +82,21 @@ impl ExternalTorque {
     /// # Errors
     /// [`LoadError`] when a load does not fit the model; nothing is changed then.
     pub fn update(&mut self, model: &Model, kinematics: &Kinematics, loads: &[Load]) -> Result<(), LoadError> {
+        self.update_with(model, kinematics, loads, &[])
+    }
+
+    /// As [`ExternalTorque::update`], with torques of elementary motions that are added to those of weight and `loads`. They have no part in
+    /// gradient and slopes.
+    ///
+    /// # Errors
+    /// As [`ExternalTorque::update`].
+    pub(crate) fn update_with(
+        &mut self,
+        model: &Model,
+        kinematics: &Kinematics,
+        loads: &[Load],
+        more: &[f64],
+    ) -> Result<(), LoadError> {
         self.pull(model, kinematics, loads)?;
         self.center_of_mass.gather(model, kinematics);
         for i in (0..model.mobilities.len()).rev() {
@@ -89,6 +104,7 @@ impl ExternalTorque {
             self.torques_of_weight(model, kinematics, i, carried);
             self.torques_of_loads(model, kinematics, i);
         }
+        self.elements.iter_mut().zip(more).for_each(|(torque, more)| *torque += more);
         self.fold(model, kinematics);
         Ok(())
     }
@@ -140,10 +156,10 @@ impl ExternalTorque {
         let Some(mobility) = model.segments[load.segment].mobility else { return };
         let pull = &mut self.pulls[mobility];
         pull.any = true;
-        let point = kinematics.station(model, load.segment, load.point);
+        let station = || kinematics.station(model, load.segment, load.point);
         let mut world = |force: Vector3<f64>| {
             pull.force += force;
-            pull.virial += point * force.transpose();
+            pull.virial += station() * force.transpose();
         };
         match load.kind {
             LoadKind::Weight(mass) => world(mass * model.gravity),
@@ -151,7 +167,7 @@ impl ExternalTorque {
             LoadKind::Force(force, FixedIn::Segment) => {
                 let force = kinematics.direction(model, load.segment, force);
                 pull.body_force += force;
-                pull.body_moment += point.cross(&force);
+                pull.body_moment += station().cross(&force);
                 self.twisted = true;
             }
             LoadKind::Couple(couple, FixedIn::World) => {

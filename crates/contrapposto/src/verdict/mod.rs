@@ -246,6 +246,8 @@ pub(crate) struct Findings {
     pub(crate) out_of_range: Vec<(usize, f64)>,
     /// Share of the instants of a motion whose acceleration a posture at rest leaves out, where the motion is fast.
     pub(crate) fast: Option<f64>,
+    /// A recorded motion, not a run.
+    pub(crate) recorded: bool,
     /// Inertia of the motion counts.
     pub(crate) dynamics: bool,
     /// The motion is repeated.

@@ -36,6 +36,7 @@ impl Verdict {
                 .map(|(missing, time)| (missing, Some(time - start)))
                 .or(found.uncarried.map(|missing| (missing, None))),
             fast: Some(found.fast_share).filter(|share| *share > FAST_SHARE && !found.dynamics),
+            recorded: true,
             dynamics: found.dynamics,
             out_of_range: found.out_of_range.clone(),
             fails,

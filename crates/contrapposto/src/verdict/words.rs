@@ -91,14 +91,14 @@ impl Findings {
         )
     }
 
-    /// `check the sign of right knee (knee_angle_r), which is outside of its range in 100 % of the frames`, or what else to check.
+    /// `check the sign of right knee (knee_angle_r), which is outside of its range in 100 % of the time`, or what else to check.
     fn doubt(&self, model: &Model) -> String {
         let name = |i: usize| {
             let name = &model.coordinates()[i].name;
             format!("{} ({name})", plain_name(name))
         };
         let outside = |&(i, share): &(usize, f64)| {
-            format!("{}, which is outside of its range in {} of the frames", name(i), percent(share))
+            format!("{}, which is outside of its range in {} of the time", name(i), percent(share))
         };
         let all: Vec<String> = self.out_of_range.iter().take(MOST_DOUBTS).map(outside).collect();
         match all.as_slice() {
@@ -171,6 +171,7 @@ impl Findings {
         }
         let head = match self.asked {
             Some(time) if self.repeats.is_some() => format!("Can be repeated for the {} asked", how_long(time)),
+            Some(time) if self.recorded => format!("Holds through the motion ({})", how_long(time)),
             Some(time) => format!("Holds through the run ({})", how_long(time)),
             None => "Holds without a limit by muscles".to_owned(),
         };

@@ -104,7 +104,8 @@ impl Job {
             let ends = motion.first().zip(motion.last()).map_or((0.0, 0.0), |(first, last)| (first.0, last.0));
             choice.check(ends).map_err(Fail::Refused)?;
         }
-        let of_motion = [doubts, note_values_out_of_range(&opened, &motion, &mut notes)].concat();
+        let of_forces = ground.iter().flat_map(|ground| ground.doubts(model, &motion)).collect();
+        let of_motion = [of_forces, doubts, note_values_out_of_range(&opened, &motion, &mut notes)].concat();
         of_motion.iter().for_each(|warning| print_note("warning", warning));
         said.iter().chain(&notes).for_each(|note| print_note("note", note));
         let doubts = [of_muscles, of_motion].concat();

@@ -29,7 +29,7 @@ impl Greatest {
     }
 }
 
-/// A warning for each support that is in the air or tilted in some frame: `assess` judges it as lying on the ground.
+/// A warning for each support that is in the air or tilted at some time: `assess` judges it as lying on the ground.
 pub(super) fn support_doubts(model: &Model, motion: &[(f64, Posture)], supports: &[Support]) -> Vec<String> {
     let mut kinematics = Kinematics::new(model);
     let mut heights = vec![Greatest::default(); supports.len()];
@@ -57,7 +57,7 @@ pub(super) fn support_doubts(model: &Model, motion: &[(f64, Posture)], supports:
         let (height, tilt) = (&heights[i], &tilts[i]);
         if height.frames > 0 {
             warnings.push(format!(
-                "support `{name}` is {:.1} cm above the lowest support at {} s, and above {:.0} cm in {:.0} % of the frames, yet it \
+                "support `{name}` is {:.1} cm above the lowest support at {} s, and above {:.0} cm in {:.0} % of the time, yet it \
                  carries the body there as if it stood on the ground: name in --support only what touches it, or give --grf",
                 100.0 * height.value,
                 height.time,
@@ -67,7 +67,7 @@ pub(super) fn support_doubts(model: &Model, motion: &[(f64, Posture)], supports:
         }
         if tilt.frames > 0 {
             warnings.push(format!(
-                "the patch of support `{name}` is tilted by {:.0} deg at {} s, and by more than {:.0} deg in {:.0} % of the frames, yet \
+                "the patch of support `{name}` is tilted by {:.0} deg at {} s, and by more than {:.0} deg in {:.0} % of the time, yet \
                  it carries the body as if it lay flat on the ground",
                 tilt.value.to_degrees(),
                 tilt.time,

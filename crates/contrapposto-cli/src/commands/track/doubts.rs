@@ -28,13 +28,13 @@ type Motion<'a> = (&'a [f64], &'a [Observed], &'a [TrackedFrame]);
 /// The warnings, in the order of their weight.
 pub(crate) fn doubts(model: &Model, matched: &Matched, unit: MarkerUnit, motion: Motion<'_>) -> Vec<String> {
     let mut warnings = vec![];
-    let other_unit = size(model, matched, unit, motion);
-    let sides = if other_unit.is_some() { None } else { swapped_sides(model, matched, motion) };
+    let other_unit = size(model, matched, unit, motion.1);
+    let sides = if other_unit.is_some() { None } else { swapped_sides(model, matched, (motion.1, motion.2)) };
     if other_unit.is_none() && sides.is_none() {
         warnings.extend(swapped_pairs(model, matched, motion));
         warnings.extend(far(matched, motion));
+        warnings.extend(lying(model, motion));
     }
-    warnings.extend(lying(model, motion));
     warnings.extend(gaps(matched, motion));
     let open = motion.2.iter().filter(|frame| !frame.solved.converged).count();
     if open > 0 {
@@ -66,7 +66,7 @@ fn extent(places: impl Iterator<Item = Vector3<f64>>) -> f64 {
 }
 
 /// The warning about markers that are much larger or smaller than the body.
-fn size(model: &Model, matched: &Matched, unit: MarkerUnit, (_, frames, _): Motion<'_>) -> Option<String> {
+pub(crate) fn size(model: &Model, matched: &Matched, unit: MarkerUnit, frames: &[Observed]) -> Option<String> {
     let fullest = frames.iter().max_by_key(|frame| frame.iter().flatten().count())?;
     let body = Kinematics::new(model);
     let seen = matched.goals.markers.iter().zip(fullest).filter(|(_, place)| place.is_some());
@@ -90,7 +90,11 @@ fn size(model: &Model, matched: &Matched, unit: MarkerUnit, (_, frames, _): Moti
 }
 
 /// The warning about left and right, where swapping all names lowers the error by much.
-fn swapped_sides(model: &Model, matched: &Matched, (_, frames, tracked): Motion<'_>) -> Option<String> {
+pub(crate) fn swapped_sides(
+    model: &Model,
+    matched: &Matched,
+    (frames, tracked): (&[Observed], &[TrackedFrame]),
+) -> Option<String> {
     let before = root_mean_square(tracked);
     let pairs = pairs(&matched.names);
     if before < DOUBTFUL || pairs.is_empty() {
@@ -98,7 +102,8 @@ fn swapped_sides(model: &Model, matched: &Matched, (_, frames, tracked): Motion<
     }
     let mut order: Vec<usize> = (0..matched.names.len()).collect();
     pairs.iter().for_each(|&(a, b)| order.swap(a, b));
-    let chosen = (0..TRIALS).map(|trial| trial * (frames.len() - 1) / (TRIALS - 1).max(1));
+    let mut chosen: Vec<usize> = (0..TRIALS).map(|trial| trial * (frames.len() - 1) / (TRIALS - 1).max(1)).collect();
+    chosen.dedup();
     let (mut sums, mut counts) = ([0.0; 2], [0; 2]);
     for frame in chosen {
         let plain = frames[frame].clone();

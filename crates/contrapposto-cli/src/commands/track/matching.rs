@@ -91,6 +91,16 @@ impl Matched {
         Ok(matched)
     }
 
+    /// Leaves out the markers that are not to be kept, in their order.
+    pub(crate) fn keep(&mut self, kept: &[bool]) {
+        let mut next = kept.iter();
+        self.goals.markers.retain(|_| next.next() == Some(&true));
+        let mut next = kept.iter();
+        self.names.retain(|_| next.next() == Some(&true));
+        let mut next = kept.iter();
+        self.columns.retain(|_| next.next() == Some(&true));
+    }
+
     /// Says which markers only one of the files has.
     fn compare(
         &mut self,
