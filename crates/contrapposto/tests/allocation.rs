@@ -200,7 +200,7 @@ fn joint_reactions_allocate_nothing() {
         ..Musculature::default()
     };
     let (mut kinematics, mut geometry) = (Kinematics::new(&model), PathGeometry::new(&model, &muscles.paths));
-    let mut reactions = JointReactions::new(&model);
+    let mut reactions = JointReactions::new(&model, &muscles);
     let loads = loads(&model);
     assert_silent("joint reactions", 0, |i| {
         kinematics.update(&model, &postures[i]).unwrap();

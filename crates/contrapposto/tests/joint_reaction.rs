@@ -152,7 +152,7 @@ impl Bench {
             kinematics: Kinematics::new(&model),
             geometry: PathGeometry::new(&model, &muscles.paths),
             tensions: muscles.muscles.iter().map(|_| rng.random_range(0.0..1500.0)).collect(),
-            reactions: JointReactions::new(&model),
+            reactions: JointReactions::new(&model, &muscles),
             muscles,
             model,
             loads,
@@ -349,7 +349,7 @@ fn a_muscle_presses_the_joint_that_it_crosses_along_the_bone() {
     };
     let mut geometry = PathGeometry::new(&model, &muscles.paths);
     geometry.update(&model, &kinematics, &muscles.paths, PathRule::Geodesic);
-    let mut reactions = JointReactions::new(&model);
+    let mut reactions = JointReactions::new(&model, &muscles);
     let mut with = |tension: f64| {
         let paths = PathForces { muscles: &muscles, geometry: &geometry, tensions: &[tension] };
         reactions.update(&model, &kinematics, &[], paths).unwrap();
@@ -369,6 +369,7 @@ fn a_muscle_presses_the_joint_that_it_crosses_along_the_bone() {
     assert_eq!(reactions.all()[ankle].compression.unwrap().along, shank);
     let root = model.segments().iter().position(|s| s.parent.is_none()).unwrap();
     assert_eq!(reactions.all()[root].compression, None);
+    assert_eq!(reactions.crossed().collect::<Vec<_>>(), [shank]);
 }
 
 /// Repeated calls do not add up, and a load that does not fit leaves the answer as it is.

@@ -7,6 +7,7 @@ use contrapposto::joint_torques::{active_torque, carried, effort, relative_load}
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Contact, Sample, Standing};
+use contrapposto::statics::Load;
 use nalgebra::Vector3;
 
 use super::recording::Row;
@@ -31,6 +32,8 @@ pub(crate) struct Frame {
     /// Fatigue of both groups of each coordinate, where the source of the frame knows fatigue.
     pub(crate) fatigue: Option<Vec<[f64; 2]>>,
     pub(crate) standing: Option<Standing>,
+    /// Loads with contact forces and inertia, where the source of the frame knows them.
+    pub(crate) loads: Option<Vec<Load>>,
 }
 
 impl Frame {
@@ -54,6 +57,7 @@ impl Frame {
             load: row.load.to_vec(),
             fatigue: Some(row.fatigue.to_vec()),
             standing,
+            loads: None,
         }
     }
 
@@ -68,6 +72,7 @@ impl Frame {
             load: sample.load.to_vec(),
             fatigue: Some(sample.fatigue.to_vec()),
             standing: sample.standing.cloned(),
+            loads: None,
         }
     }
 
@@ -80,7 +85,17 @@ impl Frame {
         let angles = angles(model, posture);
         let load = |(i, coordinate)| relative_load(coordinate, angles[i], active_torque(external[i], passive[i]));
         let load = model.coordinates().iter().enumerate().map(load).collect();
-        Self { time, posture: posture.to_vec(), angles, external, passive, load, fatigue: None, standing: None }
+        Self {
+            time,
+            posture: posture.to_vec(),
+            angles,
+            external,
+            passive,
+            load,
+            fatigue: None,
+            standing: None,
+            loads: None,
+        }
     }
 
     /// A posture that was given, held at rest.
@@ -98,7 +113,8 @@ impl Frame {
             center_of_mass: instant.torques.kinematics().center_of_mass(model).unwrap_or_default(),
             ..Standing::default()
         });
-        Self { standing, ..Self::at(model, instant.time, values, torques) }
+        let loads = Some(instant.torques.loads().to_vec());
+        Self { standing, loads, ..Self::at(model, instant.time, values, torques) }
     }
 
     /// Active torque of a coordinate about its axis, N m.

@@ -70,20 +70,27 @@ pub struct JointReactions {
     reactions: Vec<JointReaction>,
     /// By segment: mass of the segment and of all beyond it, kg.
     masses: Vec<f64>,
+    /// By segment beyond the joint: whether a muscle's path crosses it.
+    crossed: Vec<bool>,
     /// By segment: end of its bone in ground, m, as a sum over the joints which it carries, and the sum of their weights.
     ends: Vec<(Vector3<f64>, f64)>,
 }
 
 impl JointReactions {
-    /// Space for `model`.
-    pub fn new(model: &Model) -> Self {
+    /// Space for `model` and muscles.
+    pub fn new(model: &Model, muscles: &Musculature) -> Self {
         let count = model.segments.len();
         let mut masses: Vec<f64> = model.segments.iter().map(|segment| segment.mass).collect();
         for (s, segment) in model.segments.iter().enumerate().rev() {
             let beyond = masses[s];
             segment.parent.iter().for_each(|&parent| masses[parent] += beyond);
         }
-        Self { reactions: vec![JointReaction::default(); count], masses, ends: vec![(Vector3::zeros(), 0.0); count] }
+        Self {
+            reactions: vec![JointReaction::default(); count],
+            masses,
+            crossed: (0..count).map(|joint| crosses(model, muscles, joint)).collect(),
+            ends: vec![(Vector3::zeros(), 0.0); count],
+        }
     }
 
     /// Computes the reactions in the posture of `kinematics`, under gravity, `loads` and tensions. Does not allocate.
@@ -185,6 +192,22 @@ impl JointReactions {
     pub fn all(&self) -> &[JointReaction] {
         &self.reactions
     }
+
+    /// The segments beyond joints that muscles cross: where none does, the force of the joint is not known.
+    pub fn crossed(&self) -> impl Iterator<Item = usize> {
+        self.crossed.iter().enumerate().filter_map(|(segment, crossed)| crossed.then_some(segment))
+    }
+}
+
+/// Whether some muscle has points on both sides of a joint.
+fn crosses(model: &Model, muscles: &Musculature, joint: usize) -> bool {
+    let beyond = |segment: Option<usize>| {
+        std::iter::successors(segment, |&s| model.segments[s].parent).any(|segment| segment == joint)
+    };
+    muscles.muscles.iter().any(|muscle| {
+        let points = &muscles.paths.paths[muscle.spec().path].points;
+        points.iter().any(|point| beyond(point.segment)) && points.iter().any(|point| !beyond(point.segment))
+    })
 }
 
 impl JointReaction {

@@ -1,0 +1,31 @@
+//! The terminal table of forces that press joints together.
+
+use contrapposto_formats::ReactionText;
+
+use super::plain_table;
+use crate::view::words::{moment_in_words, plain};
+
+/// Most rows: hips, knees, ankles and the lower back.
+const MOST_JOINTS: usize = 7;
+
+/// Joints with their reactions, and their times (s) where there are several; empty without joints.
+pub(crate) fn reaction_table(joints: &[(&str, &ReactionText, Option<f64>)]) -> String {
+    if joints.is_empty() {
+        return String::new();
+    }
+    let timed = joints.iter().any(|(_, _, time)| time.is_some());
+    let mut table = plain_table();
+    let header = ["joint", "pressed together by, N", "body weights", "along"];
+    table.set_header(header.into_iter().chain(timed.then_some("at")));
+    for (name, reaction, time) in joints.iter().take(MOST_JOINTS) {
+        let mut row = vec![
+            (*name).to_owned(),
+            reaction.compression_n.map_or_else(String::new, |force| format!("{force:.0}")),
+            reaction.body_weights.map_or_else(String::new, |weights| format!("{weights:.2}")),
+            reaction.along.as_deref().map_or_else(String::new, plain),
+        ];
+        row.extend(time.map(moment_in_words));
+        table.add_row(row);
+    }
+    format!("{table}\n")
+}
