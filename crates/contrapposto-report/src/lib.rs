@@ -305,6 +305,21 @@ pub struct Muscles {
     pub lines: Vec<Muscle>,
     /// Of every frame the greatest torque that the muscles cannot give, N m, with its index in [`Report::joints`].
     pub lacks: Vec<Option<(Option<usize>, f64)>>,
+    /// Joints that bones press together.
+    pub pressed: Vec<PressedJoint>,
+}
+
+/// A joint that bones press together, over time.
+#[derive(Clone, Debug, Default)]
+pub struct PressedJoint {
+    /// Name of the joint.
+    pub name: String,
+    /// The bone along which the force is taken.
+    pub along: String,
+    /// The force in every frame, N; negative where the joint is pulled apart.
+    pub force: Vec<f64>,
+    /// The force over the weight of the body.
+    pub weights: Vec<f64>,
 }
 
 /// A frame that carries points of muscles: a segment, or ground.

@@ -3,10 +3,11 @@
 use serde_json::{Value, json};
 
 use crate::column::{METRES, SHARE, TURN, column, columns};
-use crate::{Carrier, Muscle, Muscles, PathPoint, Report};
+use crate::{Carrier, Muscle, Muscles, PathPoint, PressedJoint, Report};
 
-/// Steps to which tensions (N) and missing torques (N m) are rounded.
+/// Steps to which tensions (N), forces of joints in body weights, and missing torques (N m) are rounded.
 const TENSION: f64 = 1.0;
+const WEIGHTS: f64 = 0.01;
 const LACK: f64 = 0.1;
 
 /// A carrier that is a drawn segment, too, names that part instead of its places.
@@ -27,7 +28,14 @@ pub(crate) fn muscles(muscles: &Muscles, report: &Report, n: usize) -> Value {
         "carriers": muscles.carriers.iter().map(carrier).collect::<Value>(),
         "lines": muscles.lines.iter().map(|line| muscle(line, muscles.carriers.len(), n)).collect::<Value>(),
         "lacks": lacks,
+        "pressed": muscles.pressed.iter().map(|joint| pressed(joint, n)).collect::<Value>(),
     })
+}
+
+fn pressed(joint: &PressedJoint, n: usize) -> Value {
+    let PressedJoint { name, along, force, weights } = joint;
+    let [force, weights] = [(force, TENSION), (weights, WEIGHTS)].map(|(of, step)| column(of.iter().copied(), n, step));
+    json!({ "name": name, "along": along, "force": force, "weights": weights })
 }
 
 fn muscle(muscle: &Muscle, carriers: usize, n: usize) -> Value {
@@ -69,7 +77,7 @@ mod tests {
             order: vec![0, 0],
             ..Muscle::default()
         };
-        let all = Muscles { carriers, lines: vec![line], lacks: vec![None, Some((Some(2), 1.25))] };
+        let all = Muscles { carriers, lines: vec![line], lacks: vec![None, Some((Some(2), 1.25))], pressed: vec![] };
         let report = Report { segments: vec![drawn], moments: Moments::Times(vec![0.0, 1.0]), ..Report::default() };
         let value = muscles(&all, &report, 2);
         assert_eq!((&value["carriers"][1]["part"], &value["carriers"][1]["places"]), (&json!(0), &Value::Null));

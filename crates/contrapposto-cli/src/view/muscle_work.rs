@@ -207,11 +207,8 @@ impl<'a> MusclesAtWork<'a> {
 
     /// The joints that are pressed together most, as a table for the terminal; empty where the loads are not known.
     fn pressed_table(&self) -> String {
-        let mut pressed: Vec<_> = self.pressed().filter(|(_, peak)| peak.reaction.compression_n.is_some()).collect();
-        let force = |peak: &PeakReactionText| peak.reaction.compression_n.unwrap_or(0.0);
-        pressed.sort_by(|a, b| force(&b.1).total_cmp(&force(&a.1)));
-        let rows: Vec<_> = pressed.iter().map(|(name, peak)| (*name, &peak.reaction, Some(peak.at_s))).collect();
-        reaction_table(&rows)
+        let pressed: Vec<_> = self.pressed().collect();
+        reaction_table(pressed.iter().map(|(name, peak)| (*name, &peak.reaction, Some(peak.at_s))).collect())
     }
 
     /// The entries of a JSON file.

@@ -8,8 +8,11 @@ use crate::view::words::{moment_in_words, plain};
 /// Most rows: hips, knees, ankles and the lower back.
 const MOST_JOINTS: usize = 7;
 
-/// Joints with their reactions, and their times (s) where there are several; empty without joints.
-pub(crate) fn reaction_table(joints: &[(&str, &ReactionText, Option<f64>)]) -> String {
+/// The joints that are pressed together most, with the time (s) where there are several; empty where no compression is known.
+pub(crate) fn reaction_table(mut joints: Vec<(&str, &ReactionText, Option<f64>)>) -> String {
+    joints.retain(|(_, reaction, _)| reaction.compression_n.is_some());
+    let force = |reaction: &ReactionText| reaction.compression_n.unwrap_or(0.0);
+    joints.sort_by(|a, b| force(b.1).total_cmp(&force(a.1)));
     if joints.is_empty() {
         return String::new();
     }

@@ -257,8 +257,8 @@ pub(crate) fn readable(model: &Model, order: &Order, frame: &Frame<'_>) -> Strin
         let _ = write!(text, "\ncentre of mass {:.4}, {:.4}, {:.4} m\n", center.x, center.y, center.z);
     }
     if let Some(muscles) = &frame.muscles {
-        let joints: Vec<_> = muscles.reactions.iter().map(|(name, reaction)| (name.as_str(), reaction, None)).collect();
-        let _ = write!(text, "\n{}", reaction_table(&joints));
+        let joints = muscles.reactions.iter().map(|(name, reaction)| (name.as_str(), reaction, None));
+        let _ = write!(text, "\n{}", reaction_table(joints.collect()));
     }
     if let Some(gradient) = &frame.gradient {
         let mut table = plain_table();
