@@ -39,7 +39,7 @@ pub struct JointReaction {
     pub moment: Vector3<f64>,
     /// The joint's centre in ground, m.
     pub center: Vector3<f64>,
-    /// Part of the force along a bone; `None` of a joint to ground, and between bones without a length.
+    /// Part of the force along a bone; `None` between bones without a length.
     pub compression: Option<Compression>,
 }
 
@@ -175,14 +175,14 @@ impl JointReactions {
         }
         for (s, segment) in model.segments.iter().enumerate() {
             let center = self.reactions[s].center;
-            let Some(parent) = segment.parent else { continue };
             let end = match self.ends[s] {
                 (sum, weights) if weights > 0.0 => sum / weights,
                 _ => kinematics.station(model, s, segment.center_of_mass),
             };
-            let (beyond, before) = (end - center, center - self.reactions[parent].center);
-            let (bone, along) =
-                if beyond.norm() < LEAST_SHARE_OF_BONE_BEFORE * before.norm() { (before, parent) } else { (beyond, s) };
+            let beyond = end - center;
+            let before = segment.parent.map(|parent| (center - self.reactions[parent].center, parent));
+            let longer = before.filter(|(before, _)| beyond.norm() < LEAST_SHARE_OF_BONE_BEFORE * before.norm());
+            let (bone, along) = longer.unwrap_or((beyond, s));
             let force = bone.try_normalize(LEAST_BONE).map(|axis| axis.dot(&self.reactions[s].force));
             self.reactions[s].compression = force.map(|force| Compression { force, along });
         }
