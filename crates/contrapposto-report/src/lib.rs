@@ -17,6 +17,7 @@ mod skin;
 
 pub use cycles::{Band, CycleCurves, Cycles};
 pub use document::{Document, Picture, write_document};
+pub use muscles::{Carrier, PressedJoint};
 pub use page::write;
 
 /// Everything a page shows. Ground axes: x forward, y up, z to the right; m, s, N, N m, degrees.
@@ -307,26 +308,6 @@ pub struct Muscles {
     pub lacks: Vec<Option<(Option<usize>, f64)>>,
     /// Joints that bones press together.
     pub pressed: Vec<PressedJoint>,
-}
-
-/// A joint that bones press together, over time.
-#[derive(Clone, Debug, Default)]
-pub struct PressedJoint {
-    /// Name of the joint.
-    pub name: String,
-    /// The bone along which the force is taken.
-    pub along: String,
-    /// The force in every frame, N; negative where the joint is pulled apart.
-    pub force: Vec<f64>,
-    /// The force over the weight of the body.
-    pub weights: Vec<f64>,
-}
-
-/// A frame that carries points of muscles: a segment, or ground.
-#[derive(Clone, Debug, Default)]
-pub struct Carrier {
-    /// Placement in every frame of the report: origin, m, and unit quaternion `w x y z`.
-    pub places: Vec<[f64; 7]>,
 }
 
 /// One muscle over time.

@@ -3,7 +3,27 @@
 use serde_json::{Value, json};
 
 use crate::column::{METRES, SHARE, TURN, column, columns};
-use crate::{Carrier, Muscle, Muscles, PathPoint, PressedJoint, Report};
+use crate::{Muscle, Muscles, PathPoint, Report};
+
+/// A frame that carries points of muscles: a segment, or ground.
+#[derive(Clone, Debug, Default)]
+pub struct Carrier {
+    /// Placement in every frame of the report: origin, m, and unit quaternion `w x y z`.
+    pub places: Vec<[f64; 7]>,
+}
+
+/// A joint that bones press together, over time.
+#[derive(Clone, Debug, Default)]
+pub struct PressedJoint {
+    /// Name of the joint.
+    pub name: String,
+    /// The bone along which the force is taken.
+    pub along: String,
+    /// The force in every frame, N; negative where the joint is pulled apart.
+    pub force: Vec<f64>,
+    /// The force over the weight of the body.
+    pub weights: Vec<f64>,
+}
 
 /// Steps to which tensions (N), forces of joints in body weights, and missing torques (N m) are rounded.
 const TENSION: f64 = 1.0;

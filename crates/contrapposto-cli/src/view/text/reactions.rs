@@ -6,7 +6,7 @@ use super::plain_table;
 use crate::view::words::{moment_in_words, plain};
 
 /// Most rows: hips, knees, ankles and the lower back.
-const MOST_JOINTS: usize = 7;
+const MOST_PRESSED_JOINTS: usize = 7;
 
 /// The joints that are pressed together most, with the time (s) where there are several; empty where no compression is known.
 pub(crate) fn reaction_table(mut joints: Vec<(&str, &ReactionText, Option<f64>)>) -> String {
@@ -20,7 +20,7 @@ pub(crate) fn reaction_table(mut joints: Vec<(&str, &ReactionText, Option<f64>)>
     let mut table = plain_table();
     let header = ["joint", "pressed together by, N", "body weights", "along"];
     table.set_header(header.into_iter().chain(timed.then_some("at")));
-    for (name, reaction, time) in joints.iter().take(MOST_JOINTS) {
+    for (name, reaction, time) in joints.iter().take(MOST_PRESSED_JOINTS) {
         let mut row = vec![
             (*name).to_owned(),
             reaction.compression_n.map_or_else(String::new, |force| format!("{force:.0}")),
