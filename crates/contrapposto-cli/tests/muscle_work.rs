@@ -123,3 +123,38 @@ fn pose_says_which_muscles_hold_the_posture() {
     let words = run(&["pose", &file, "--no-report"]).stdout;
     assert!(words.contains("hardest-worked muscle") && words.contains("strong"), "{words}");
 }
+
+/// The force of the hinge by hand: the weight and the force on the body, and the tensions of three muscles that pull it straight up.
+#[test]
+fn torques_and_assess_say_what_the_joint_transmits() {
+    let folder = tempfile::tempdir().unwrap();
+    // The bone has its centre of mass under the hinge.
+    let model = model().replace("<mass>1</mass>", "<mass>1</mass><mass_center>0 -0.2 0</mass_center>");
+    let file = write(folder.path(), "m.osim", &model);
+    let motion = write(folder.path(), "still.csv", "time,q_deg\n0,0\n20,0\n");
+    let force = ["--force", "b -20,0,0 at 0,-0.3,0 world"];
+    let json = run(&[&["torques", &file, "default", "--json"][..], &force].concat());
+    let frames: Value = serde_json::from_str(&json.stdout).unwrap();
+    let reaction = &frames[0]["reactions"]["j"];
+    let tensions = ["weak", "strong", "behind"].map(|name| number(&frames[0]["muscle_forces_n"][name]));
+    let up: f64 = tensions.iter().sum();
+    let [fx, fy, fz] = [0, 1, 2].map(|i| number(&reaction["force_n"][i]));
+    assert!((fx - 20.0).abs() < 1e-9 && fz.abs() < 1e-9, "{reaction}");
+    let weight = number(&reaction["compression_n"]) / number(&reaction["body_weights"]);
+    assert!((fy + up - weight).abs() < 1e-9 && up > 100.0, "{reaction}, {up} N up");
+    assert!((number(&reaction["compression_n"]) + fy).abs() < 1e-9, "the bone hangs down: {reaction}");
+    // About the hinge nothing is left for the joint to give.
+    assert!((0..3).all(|i| number(&reaction["moment_nm"][i]).abs() < 1e-6), "{reaction}");
+    assert_eq!(frames[0]["muscles_lack"], Value::Null);
+    assert_eq!(reaction["frame"], "b");
+    let arguments = [&["assess", &file, &motion, "--fixed-root"][..], &force].concat();
+    let assessed = run(&[&arguments[..], &["--json"]].concat());
+    let all: Value = serde_json::from_str(&assessed.stdout).unwrap();
+    let (there, same) = (&all["reactions"]["j"], &reaction["force_n"]);
+    assert!((0..3).all(|i| (number(&there["force_n"][i]) - number(&same[i])).abs() < 1e-9), "{there}");
+    assert_eq!(number(&there["at_s"]), 0.0);
+    let without = run(&["torques", &file, "default", "--json", "--muscles", "off"]);
+    assert!(!without.stdout.contains("reactions"), "{}", without.stdout);
+    let words = run(&[&["torques", &file, "default"][..], &force].concat());
+    assert!(words.stdout.contains("pressed together by"), "{}", words.stdout);
+}

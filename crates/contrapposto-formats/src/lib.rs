@@ -28,6 +28,7 @@ mod numbers;
 mod overlay;
 mod passive_law;
 mod pose;
+mod reaction;
 mod scenario;
 mod summary;
 mod sweep;
@@ -44,11 +45,13 @@ pub use input_error::{InputError, nearest};
 pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};
 pub use model_file::{ModelFileError, ModelFormat, read_model};
 pub use muscle_work::{
-    LEAST_ACTIVATION_SAID, LackText, MuscleWorkText, MusclesFailText, TiredMuscleText, WorkedMuscleText, WorksForText,
+    LEAST_ACTIVATION_SAID, LackText, MuscleWorkText, MusclesFailText, PeakReactionText, TiredMuscleText,
+    WorkedMuscleText, WorksForText,
 };
 pub use numbers::NumberError;
 pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
+pub use reaction::ReactionText;
 pub use scenario::{
     ContentsTask, MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, RunScenario, STRENGTH_DEVIATIONS,
     ScenarioContents, read_contents, read_pose, read_relax, read_run, read_scenario, scenario_adult, scenario_model,

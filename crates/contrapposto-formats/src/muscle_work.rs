@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use contrapposto::model::{Model, Side};
 use serde::Serialize;
 
+use crate::ReactionText;
+
 /// Activations below this are said as none.
 pub const LEAST_ACTIVATION_SAID: f64 = 0.005;
 
@@ -15,9 +17,22 @@ pub struct MuscleWorkText {
     pub muscles: BTreeMap<String, WorkedMuscleText>,
     /// The greatest torque that the muscles could not give; `null`: they gave all.
     pub muscles_lack: Option<LackText>,
+    /// By joint that muscles cross; left out where the loads are not known.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub reactions: BTreeMap<String, PeakReactionText>,
     /// Of muscles that tire one by one: when they can no longer give all torques.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub muscles_fail: Option<MusclesFailText>,
+}
+
+/// Force and moment of a joint at the time of its greatest compression.
+#[derive(Clone, Debug, Serialize)]
+pub struct PeakReactionText {
+    /// The time, s.
+    pub at_s: f64,
+    /// Force and moment.
+    #[serde(flatten)]
+    pub reaction: ReactionText,
 }
 
 /// Times at which muscles can no longer give all torques, s; `null`: not within a day with the last posture held on.

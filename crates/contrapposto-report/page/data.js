@@ -51,6 +51,7 @@ const report = (() => {
   }
   const lacks = read.muscles && read.muscles.lacks;
   if (lacks) [lacks.torque, lacks.joint] = [list(lacks.torque), list(lacks.joint)];
+  for (const joint of read.muscles ? read.muscles.pressed : []) [joint.force, joint.weights] = [list(joint.force), list(joint.weights)];
   return read;
 })();
 

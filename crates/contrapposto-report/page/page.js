@@ -1,5 +1,5 @@
 // Ties the page together: one frame, one joint, one measure; everything shown follows from these three.
-const HARDEST_GROUPS = 8, LONGEST_PLAY = 12, MOST_LOADS = 3; // rows; s; named in the key
+const HARDEST_GROUPS = 8, MOST_PRESSED = 7, LONGEST_PLAY = 12, MOST_LOADS = 3; // rows; rows; s; named in the key
 const MOST_REASONS = 2, MOST_ENTRIES = 6; // shown before the rest is folded
 const NARROW = matchMedia("(max-width: 52rem)"), TOUCHED = matchMedia("(pointer: coarse)").matches;
 const SMALLEST_BODY = 300, LARGEST_BODY = 680; // px
@@ -361,6 +361,13 @@ class Page {
     find("single-when").textContent = find("when").textContent;
     const missing = lacks ? lacks.torque[i] : 0, joint = lacks && report.joints[lacks.joint[i] - 1];
     find("lacks").textContent = missing > 0.05 ? `At this moment the muscles together cannot give all torques: ${missing.toFixed(1)} N m are missing${joint ? ` at ${joint.label}` : ""}. The activations are those that come nearest.` : "";
+    const pressed = report.muscles.pressed.filter((joint) => joint.force[i] > 0).sort((a, b) => b.force[i] - a.force[i]);
+    find("pressed").hidden = !pressed.length;
+    find("pressed").tBodies[0].replaceChildren(...pressed.slice(0, MOST_PRESSED).map((joint) => {
+      const row = make("tr");
+      row.append(...[joint.name, newtons(joint.force[i]), joint.weights[i].toFixed(2), joint.along].map((text) => make("td", text)));
+      return row;
+    }));
     this.describeMuscle(this.muscle);
   }
 

@@ -17,6 +17,7 @@ mod skin;
 
 pub use cycles::{Band, CycleCurves, Cycles};
 pub use document::{Document, Picture, write_document};
+pub use muscles::{Carrier, PressedJoint};
 pub use page::write;
 
 /// Everything a page shows. Ground axes: x forward, y up, z to the right; m, s, N, N m, degrees.
@@ -305,13 +306,8 @@ pub struct Muscles {
     pub lines: Vec<Muscle>,
     /// Of every frame the greatest torque that the muscles cannot give, N m, with its index in [`Report::joints`].
     pub lacks: Vec<Option<(Option<usize>, f64)>>,
-}
-
-/// A frame that carries points of muscles: a segment, or ground.
-#[derive(Clone, Debug, Default)]
-pub struct Carrier {
-    /// Placement in every frame of the report: origin, m, and unit quaternion `w x y z`.
-    pub places: Vec<[f64; 7]>,
+    /// Joints that bones press together.
+    pub pressed: Vec<PressedJoint>,
 }
 
 /// One muscle over time.

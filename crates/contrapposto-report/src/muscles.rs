@@ -3,10 +3,31 @@
 use serde_json::{Value, json};
 
 use crate::column::{METRES, SHARE, TURN, column, columns};
-use crate::{Carrier, Muscle, Muscles, PathPoint, Report};
+use crate::{Muscle, Muscles, PathPoint, Report};
 
-/// Steps to which tensions (N) and missing torques (N m) are rounded.
+/// A frame that carries points of muscles: a segment, or ground.
+#[derive(Clone, Debug, Default)]
+pub struct Carrier {
+    /// Placement in every frame of the report: origin, m, and unit quaternion `w x y z`.
+    pub places: Vec<[f64; 7]>,
+}
+
+/// A joint that bones press together, over time.
+#[derive(Clone, Debug, Default)]
+pub struct PressedJoint {
+    /// Name of the joint.
+    pub name: String,
+    /// The bone along which the force is taken.
+    pub along: String,
+    /// The force in every frame, N; negative where the joint is pulled apart.
+    pub force: Vec<f64>,
+    /// The force over the weight of the body.
+    pub weights: Vec<f64>,
+}
+
+/// Steps to which tensions (N), forces of joints in body weights, and missing torques (N m) are rounded.
 const TENSION: f64 = 1.0;
+const WEIGHTS: f64 = 0.01;
 const LACK: f64 = 0.1;
 
 /// A carrier that is a drawn segment, too, names that part instead of its places.
@@ -27,7 +48,14 @@ pub(crate) fn muscles(muscles: &Muscles, report: &Report, n: usize) -> Value {
         "carriers": muscles.carriers.iter().map(carrier).collect::<Value>(),
         "lines": muscles.lines.iter().map(|line| muscle(line, muscles.carriers.len(), n)).collect::<Value>(),
         "lacks": lacks,
+        "pressed": muscles.pressed.iter().map(|joint| pressed(joint, n)).collect::<Value>(),
     })
+}
+
+fn pressed(joint: &PressedJoint, n: usize) -> Value {
+    let PressedJoint { name, along, force, weights } = joint;
+    let [force, weights] = [(force, TENSION), (weights, WEIGHTS)].map(|(of, step)| column(of.iter().copied(), n, step));
+    json!({ "name": name, "along": along, "force": force, "weights": weights })
 }
 
 fn muscle(muscle: &Muscle, carriers: usize, n: usize) -> Value {
@@ -69,7 +97,7 @@ mod tests {
             order: vec![0, 0],
             ..Muscle::default()
         };
-        let all = Muscles { carriers, lines: vec![line], lacks: vec![None, Some((Some(2), 1.25))] };
+        let all = Muscles { carriers, lines: vec![line], lacks: vec![None, Some((Some(2), 1.25))], pressed: vec![] };
         let report = Report { segments: vec![drawn], moments: Moments::Times(vec![0.0, 1.0]), ..Report::default() };
         let value = muscles(&all, &report, 2);
         assert_eq!((&value["carriers"][1]["part"], &value["carriers"][1]["places"]), (&json!(0), &Value::Null));

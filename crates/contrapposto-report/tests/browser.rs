@@ -10,8 +10,8 @@ use std::path::PathBuf;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use contrapposto_report::{
-    Balance, Carrier, Entry, Fact, Figure, ForceSolid, Group, Joint, List, Moments, Muscle, Muscles, PathPoint, Push,
-    Report, Segment, Support, Surface, Table, Target, Thing, write,
+    Balance, Carrier, Entry, Fact, Figure, ForceSolid, Group, Joint, List, Moments, Muscle, Muscles, PathPoint,
+    PressedJoint, Push, Report, Segment, Support, Surface, Table, Target, Thing, write,
 };
 use serde_json::json;
 use support::chromium::Chromium;
@@ -298,7 +298,9 @@ fn muscles(report: &Report) -> Muscles {
     let points = [0.06, 0.08, 0.1].map(|z| point(1, [0.05, -4.0 * z, z])).to_vec();
     let still = Muscle { name: "rests".to_owned(), activation: vec![0.0; 50], points, ..line.clone() };
     let lacks = (0..50).map(|frame| (frame > 40).then_some((Some(1), 7.25))).collect();
-    Muscles { carriers, lines: vec![line, still], lacks }
+    let force = (0..50).map(|frame| if frame < 10 { 1234.0 } else { -5.0 }).collect();
+    let pressed = PressedJoint { name: "hinge".to_owned(), along: "bar".to_owned(), force, weights: vec![1.75; 50] };
+    Muscles { carriers, lines: vec![line, still], lacks, pressed: vec![pressed] }
 }
 
 #[test]
@@ -327,6 +329,8 @@ fn muscles_are_drawn_named_listed_and_switched_off() {
         "{}",
         page.evaluate(lacks)
     );
+    let pressed = "[...document.querySelectorAll('#pressed tbody td')].map((cell) => cell.textContent)";
+    assert_eq!(page.evaluate(pressed), json!([]), "the joint is pulled apart there");
     page.evaluate("document.querySelector('#single tbody tr').click()");
     let named = format!("{HOSTILE}: activation 98\u{a0}%, 321\u{a0}N, works for {HOSTILE}");
     assert_eq!(page.evaluate("document.getElementById('muscle-now').textContent"), named);
@@ -336,6 +340,7 @@ fn muscles_are_drawn_named_listed_and_switched_off() {
     // The pointer finds it, too, and the line of an earlier frame is another one.
     page.press("Home");
     assert_eq!(page.evaluate(lacks), "");
+    assert_eq!(page.evaluate(pressed), json!(["hinge", "1234\u{a0}N", "1.75", "bar"]));
     let found = "(() => { const c = document.getElementById('body'), r = c.getBoundingClientRect();
       for (let y = 0; y < 1; y += 0.02) for (let x = 0; x < 1; x += 0.005) {
         c.dispatchEvent(new PointerEvent('pointermove', { clientX: r.left + x * r.width, clientY: r.top + y * r.height }));

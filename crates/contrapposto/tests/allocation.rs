@@ -7,9 +7,12 @@ use contrapposto::batch::{Statics, Table, Wanted};
 use contrapposto::contact::{ContactForces, Support};
 use contrapposto::dynamics::Inertia;
 use contrapposto::hybrid::{self, Strategy, minimise, minimise_literal};
-use contrapposto::joint_torques::{JointTorques, Quantities};
+use contrapposto::joint_torques::{JointReactions, JointTorques, PathForces, Quantities};
 use contrapposto::kinematics::{self, Kinematics};
 use contrapposto::model::{Adult, Model, adult};
+use contrapposto::muscle::{
+    FiberLaw, Location, Muscle, MuscleSpec, Musculature, Path, PathGeometry, PathPoint, PathRule, Paths, Thelen2003,
+};
 use contrapposto::posture;
 use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
@@ -172,6 +175,39 @@ fn torques_about_axes_allocate_nothing() {
         sum += level.lower.iter().sum::<f64>() + body.gradient_about_axes().get(7, 8);
     });
     assert!(sum != 0.0);
+}
+
+#[test]
+fn joint_reactions_allocate_nothing() {
+    let (model, postures) = body();
+    let points = ["torso", "femur_r", "tibia_r"]
+        .map(|name| PathPoint { segment: model.segment(name), location: Location::Fixed(V::new(0.05, -0.1, 0.0)) });
+    let muscle = Muscle::new(MuscleSpec {
+        name: "m".to_owned(),
+        path: 0,
+        max_isometric_force: 1000.0,
+        optimal_fiber_length: 0.1,
+        tendon_slack_length: 0.2,
+        pennation: 0.0,
+        max_pennation: 1.4,
+        least_activation: 0.01,
+        rigid_tendon: false,
+        law: FiberLaw::Thelen2003(Thelen2003::default()),
+    });
+    let muscles = Musculature {
+        paths: Paths { paths: vec![Path { points: points.to_vec(), ..Path::default() }], ..Paths::default() },
+        muscles: vec![muscle.unwrap()],
+        ..Musculature::default()
+    };
+    let (mut kinematics, mut geometry) = (Kinematics::new(&model), PathGeometry::new(&model, &muscles.paths));
+    let mut reactions = JointReactions::new(&model, &muscles);
+    let loads = loads(&model);
+    assert_silent("joint reactions", 0, |i| {
+        kinematics.update(&model, &postures[i]).unwrap();
+        geometry.update(&model, &kinematics, &muscles.paths, PathRule::Geodesic);
+        let paths = PathForces { muscles: &muscles, geometry: &geometry, tensions: &[500.0] };
+        reactions.update(&model, &kinematics, &loads, paths).unwrap();
+    });
 }
 
 #[test]

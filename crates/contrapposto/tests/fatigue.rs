@@ -331,6 +331,29 @@ fn the_error_stays_within_its_bound_whatever_the_load_does() {
     }
 }
 
+/// Long times at once are the same as short ones in turn, of loads that are carried, that fail under way, and that are too large from the start.
+#[test]
+fn a_long_time_is_many_short_ones() {
+    let mut rng = random("a_long_time_is_many_short_ones");
+    let (mut carried, mut failed) = (0, 0);
+    for class in ["ankle", "knee", "trunk", "shoulder", "elbow", "grip"] {
+        let law = three_compartment(class);
+        for _ in 0..40 {
+            let load = rng.random_range(0.0..1.0) * rng.random_range(0.0..1.0);
+            let fatigued = rng.random_range(0.0..1.0) * rng.random_range(0.0..1.0);
+            let active = rng.random_range(0.0..1.0 - fatigued);
+            let start = Compartments { active, resting: 1.0 - active - fatigued, fatigued };
+            // 80 steps of 0.05 s each; at once 80 times 20 of the same.
+            let short = (0..20).fold(start, |state, _| law.advance(state, load, 4.0));
+            let long = law.advance(start, load, 80.0);
+            let off = (short.active - long.active).abs().max((short.fatigued - long.fatigued).abs());
+            assert!(off < 1e-12, "{class}, load {load}, {start:?}: {short:?}, {long:?}");
+            if long.fatigued <= 1.0 - load { carried += 1 } else { failed += 1 }
+        }
+    }
+    assert!(carried > 100 && failed > 10, "{carried} carried, {failed} failed");
+}
+
 #[test]
 fn recovery_is_fast_at_rest_only() {
     for (class, f, r, rest, _) in CLASSES {

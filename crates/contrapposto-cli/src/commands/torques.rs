@@ -4,8 +4,11 @@ use std::path::Path;
 
 use contrapposto::assessment::acceleration;
 use contrapposto::dynamics::Inertia;
-use contrapposto::joint_torques::{JointMuscles, JointTorques, JointTorquesError, Quantities};
+use contrapposto::joint_torques::{
+    JointMuscles, JointReactions, JointTorques, JointTorquesError, MuscleWork, Quantities,
+};
 use contrapposto::model::Model;
+use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::loads::GroundReaction;
 use contrapposto_formats::tissue::SourcedModel;
@@ -16,9 +19,10 @@ use crate::model_file::open_with_muscles;
 use crate::motion_file::{cut, loads_of, note_values_out_of_range, read_whole_motion};
 use crate::moving::{Recorded, fast_motion, keep_overlap};
 use crate::output::{Folder, Pending, folder_and_name, print_note};
+use crate::view::muscle_work::reacted;
 use crate::view::residual::Residual;
 use crate::view::text::torques::{self as text, Columns};
-use crate::view::torque_rows::{Frame, Order};
+use crate::view::torque_rows::{Frame, MusclesOfFrame, Order};
 
 /// Model, frames and loads of the command.
 struct Job {
@@ -28,6 +32,8 @@ struct Job {
     loads: Vec<Load>,
     ground: Option<GroundReaction>,
     gradient: bool,
+    /// Whether single muscles and forces of joints are shown: in JSON, and of one frame.
+    single_muscles: bool,
 }
 
 pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
@@ -44,7 +50,9 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     let warnings = note_values_out_of_range(&opened, &recorded.frames, &mut notes);
     let of_forces: Vec<String> = ground.iter().flat_map(|ground| ground.doubts(model, &recorded.frames)).collect();
     of_forces.iter().chain(&recorded.doubts).chain(&warnings).for_each(|warning| print_note("warning", warning));
-    let job = Job { opened, muscles, recorded, loads, ground, gradient: args.gradient };
+    let to_json = matches!(&target, Some(Target { form: Form::Json, .. }));
+    let single_muscles = args.json || to_json || recorded.frames.len() == 1;
+    let job = Job { opened, muscles, recorded, loads, ground, gradient: args.gradient, single_muscles };
     job.check()?;
     job.recorded.said.iter().for_each(|said| print_note("note", said));
     notes.iter().for_each(|note| print_note("note", note));
@@ -164,6 +172,8 @@ impl Job {
         let quantities = Quantities { gradient: self.gradient, ..Quantities::TORQUES };
         let mut loads = vec![];
         let mut inertia = Inertia::new(model);
+        let mut muscles =
+            self.muscles.as_ref().filter(|_| self.single_muscles).and_then(|of| SingleMuscles::new(model, of));
         for (index, (time, posture)) in self.recorded.frames.iter().enumerate() {
             let failed = |why: JointTorquesError| Fail::Refused(format!("at {time} s: {why}"));
             body.place(model, posture).map_err(|error| failed(error.into()))?;
@@ -190,10 +200,41 @@ impl Job {
             if self.gradient {
                 frame = frame.with_gradient(body.gradient(), order);
             }
+            if let Some(muscles) = &mut muscles {
+                let found = muscles.of_frame(model, posture, &body);
+                frame.muscles = Some(found.map_err(|why| Fail::Refused(format!("at {time} s: {why}")))?);
+            }
             residual.record(&frame);
             visit(&posed, &frame)?;
         }
         Ok(())
+    }
+}
+
+/// Single muscles, and the forces of the joints that they cross.
+struct SingleMuscles {
+    work: MuscleWork,
+    reactions: JointReactions,
+}
+
+impl SingleMuscles {
+    /// Of a body whose muscles give joints their strength.
+    fn new(model: &Model, muscles: &JointMuscles) -> Option<Self> {
+        let work = MuscleWork::new(model, muscles)?;
+        Some(Self { reactions: JointReactions::new(model, muscles.musculature()), work })
+    }
+
+    fn of_frame(&mut self, model: &Model, posture: &Posture, body: &JointTorques) -> Result<MusclesOfFrame, String> {
+        let active = model.coordinates().iter().map(|of| of.rate.map_or(0.0, |rate| body.active_torque()[rate]));
+        self.work.update(model, posture, &active.collect::<Vec<_>>()).map_err(|why| why.to_string())?;
+        let reactions = reacted(model, &self.work, body.loads(), &mut self.reactions);
+        let muscles = &self.work.muscles().musculature().muscles;
+        let tensions = muscles.iter().zip(self.work.tensions());
+        Ok(MusclesOfFrame {
+            tensions: tensions.map(|(muscle, tension)| (muscle.spec().name.clone(), *tension)).collect(),
+            lack: self.work.missing(model).map(|of| (model.coordinates()[of.coordinate].name.clone(), of.torque)),
+            reactions: reactions.map_err(|why| why.to_string())?,
+        })
     }
 }
 

@@ -7,6 +7,7 @@ use contrapposto::joint_torques::{active_torque, carried, effort, relative_load}
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Contact, Sample, Standing};
+use contrapposto::statics::Load;
 use nalgebra::Vector3;
 
 use super::recording::{Row, load_and_tension};
@@ -33,6 +34,8 @@ pub(crate) struct Frame {
     /// Load and tension (N) of every muscle that tires by itself.
     pub(crate) muscles: Vec<[f64; 2]>,
     pub(crate) standing: Option<Standing>,
+    /// Loads with contact forces and inertia, where the source of the frame knows them.
+    pub(crate) loads: Option<Vec<Load>>,
 }
 
 impl Frame {
@@ -57,6 +60,7 @@ impl Frame {
             fatigue: Some(row.fatigue.to_vec()),
             muscles: row.muscles.to_vec(),
             standing,
+            loads: None,
         }
     }
 
@@ -72,6 +76,7 @@ impl Frame {
             fatigue: Some(sample.fatigue.to_vec()),
             muscles: load_and_tension(sample).collect(),
             standing: sample.standing.cloned(),
+            loads: None,
         }
     }
 
@@ -84,8 +89,18 @@ impl Frame {
         let angles = angles(model, posture);
         let load = |(i, coordinate)| relative_load(coordinate, angles[i], active_torque(external[i], passive[i]));
         let load = model.coordinates().iter().enumerate().map(load).collect();
-        let (posture, muscles) = (posture.to_vec(), vec![]);
-        Self { time, posture, angles, external, passive, load, fatigue: None, muscles, standing: None }
+        Self {
+            time,
+            posture: posture.to_vec(),
+            angles,
+            external,
+            passive,
+            load,
+            fatigue: None,
+            muscles: vec![],
+            standing: None,
+            loads: None,
+        }
     }
 
     /// A posture that was given, held at rest.
@@ -103,7 +118,8 @@ impl Frame {
             center_of_mass: instant.torques.kinematics().center_of_mass(model).unwrap_or_default(),
             ..Standing::default()
         });
-        Self { standing, ..Self::at(model, instant.time, values, torques) }
+        let loads = Some(instant.torques.loads().to_vec());
+        Self { standing, loads, ..Self::at(model, instant.time, values, torques) }
     }
 
     /// Active torque of a coordinate about its axis, N m.

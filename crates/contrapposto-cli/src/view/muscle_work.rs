@@ -1,22 +1,24 @@
 //! Computes how hard every muscle works in the moments that a page shows, and where it lies.
 
-use contrapposto::joint_torques::{JointMuscles, MissingTorque, MuscleWork};
+use contrapposto::joint_torques::{JointMuscles, JointReactions, MissingTorque, MuscleWork, PathForces};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Side};
 use contrapposto::muscle::{DrawnPoint, Muscle, Musculature};
 use contrapposto::posture::Posture;
 use contrapposto::simulation::{MuscleOutcome, MuscleSummary};
+use contrapposto::statics::{Load, LoadError};
 use contrapposto_formats::animation::Tube;
 use contrapposto_formats::{
-    LEAST_ACTIVATION_SAID, LackText, MuscleWorkText, MusclesFailText, TiredMuscleText, WorkedMuscleText, WorksForText,
+    LEAST_ACTIVATION_SAID, LackText, MuscleWorkText, MusclesFailText, PeakReactionText, ReactionText, TiredMuscleText,
+    WorkedMuscleText, WorksForText,
 };
-
 use contrapposto_plot::{BodyMuscle, load_color};
 use nalgebra::Point3;
 
 use super::axes::turn;
 use super::frame::Frame;
 use super::text::plain_table;
+use super::text::reactions::reaction_table;
 use super::words::{group, moment_in_words, percent, plain};
 use crate::fail::Fail;
 
@@ -51,6 +53,8 @@ pub(crate) struct WorkingMoment {
     pub(crate) tensions: Vec<f64>,
     /// The greatest torque that the muscles cannot give.
     pub(crate) missing: Option<MissingTorque>,
+    /// By joint that muscles cross, outermost last; none where the loads are not known.
+    pub(crate) reactions: Vec<(String, ReactionText)>,
     /// The line of every muscle, each point in the frame of its segment, m.
     pub(crate) lines: Vec<Vec<DrawnPoint>>,
 }
@@ -74,6 +78,7 @@ pub(crate) fn muscles_at_work<'a>(
     judged: impl Fn(f64) -> bool,
 ) -> Result<Option<MusclesAtWork<'a>>, Fail> {
     let Some(mut work) = muscles.and_then(|muscles| MuscleWork::new(model, muscles)) else { return Ok(None) };
+    let mut reactions = JointReactions::new(model, work.muscles().musculature());
     let mut moments = vec![];
     for frame in frames {
         let active: Vec<f64> = (0..frame.external.len()).map(|i| frame.active(i)).collect();
@@ -86,6 +91,10 @@ pub(crate) fn muscles_at_work<'a>(
             }
             point
         };
+        let known = frame
+            .loads
+            .as_deref()
+            .map(|loads| reacted(model, &work, loads, &mut reactions).map_err(|error| Fail::job("muscles", error)));
         let count = work.tensions().len();
         // Muscles that have tired one by one share the torques in another way than rested ones.
         let [activations, tensions] = match frame.muscles.is_empty() {
@@ -98,10 +107,29 @@ pub(crate) fn muscles_at_work<'a>(
             activations,
             tensions,
             missing: work.missing(model),
+            reactions: known.transpose()?.unwrap_or_default(),
             lines: (0..count).map(|muscle| work.line(muscle).into_iter().map(local).collect()).collect(),
         });
     }
     Ok(Some(MusclesAtWork { model, work, tired: None, moments }))
+}
+
+/// Force and moment of the joints that muscles cross, by name of the joint, in the posture of `work`.
+pub(crate) fn reacted(
+    model: &Model,
+    work: &MuscleWork,
+    loads: &[Load],
+    reactions: &mut JointReactions,
+) -> Result<Vec<(String, ReactionText)>, LoadError> {
+    let muscles = work.muscles();
+    let (geometry, tensions) = (muscles.about_axes(), work.tensions());
+    let paths = PathForces { muscles: muscles.musculature(), geometry, tensions };
+    reactions.update(model, work.kinematics(), loads, paths)?;
+    let text = |segment: usize| {
+        let reaction = ReactionText::new(model, work.kinematics(), segment, &reactions.all()[segment]);
+        (model.segments()[segment].joint.clone(), reaction)
+    };
+    Ok(reactions.crossed().map(text).collect())
 }
 
 impl<'a> MusclesAtWork<'a> {
@@ -196,6 +224,27 @@ impl<'a> MusclesAtWork<'a> {
         all.rev().max_by(|a, b| a.0.torque.total_cmp(&b.0.torque))
     }
 
+    /// The joints that muscles cross, each at its greatest compression.
+    fn pressed_in(moments: &[WorkingMoment]) -> impl Iterator<Item = (&str, PeakReactionText)> {
+        let judged = || moments.iter().filter(|moment| moment.judged && !moment.reactions.is_empty());
+        let joints = judged().next().map_or(0, |moment| moment.reactions.len());
+        let pressed =
+            |moment: &WorkingMoment, joint: usize| moment.reactions[joint].1.compression_n.unwrap_or(f64::NEG_INFINITY);
+        (0..joints).filter_map(move |joint| {
+            // Of equals the first.
+            let greatest = judged().map(|moment| pressed(moment, joint)).fold(f64::NEG_INFINITY, f64::max);
+            let moment = judged().find(|moment| pressed(moment, joint) >= greatest)?;
+            let (name, reaction) = &moment.reactions[joint];
+            Some((name.as_str(), PeakReactionText { at_s: moment.time, reaction: reaction.clone() }))
+        })
+    }
+
+    /// The joints that are pressed together most, as a table for the terminal; empty where the loads are not known.
+    fn pressed_table(&self) -> String {
+        let pressed: Vec<_> = Self::pressed_in(&self.moments).collect();
+        reaction_table(pressed.iter().map(|(name, peak)| (*name, &peak.reaction, Some(peak.at_s))).collect())
+    }
+
     /// The entries of a JSON file.
     pub(crate) fn text(&self) -> MuscleWorkText {
         self.text_in(&self.moments)
@@ -227,6 +276,7 @@ impl<'a> MusclesAtWork<'a> {
         MuscleWorkText {
             muscles: self.peaks_in(moments).map(of_muscle).collect(),
             muscles_lack: Self::lack_in(moments).map(lack),
+            reactions: Self::pressed_in(moments).map(|(name, peak)| (name.to_owned(), peak)).collect(),
             muscles_fail: self.tired.map(fail),
         }
     }
@@ -254,7 +304,7 @@ impl<'a> MusclesAtWork<'a> {
             table.add_row(row);
         }
         let rows = if peaks.is_empty() { "no muscle of the model works\n".to_owned() } else { format!("{table}\n") };
-        rows + &self.lack_in_words().map_or_else(String::new, |text| text + "\n")
+        rows + &self.lack_in_words().map_or_else(String::new, |text| text + "\n") + &self.pressed_table()
     }
 
     /// The sentence about torques that the muscles cannot give.

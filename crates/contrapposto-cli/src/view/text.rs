@@ -12,6 +12,7 @@ pub(crate) mod muscle_hold;
 pub(crate) mod muscles;
 pub(crate) mod population;
 pub(crate) mod pose;
+pub(crate) mod reactions;
 pub(crate) mod relax;
 pub(crate) mod simulate;
 pub(crate) mod sources;

@@ -4,6 +4,7 @@ use contrapposto::dynamics::Inertia;
 use contrapposto::joint_torques::{JointTorques, active_torque, effort};
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::statics::Gradient;
+use contrapposto_formats::ReactionText;
 use nalgebra::Vector3;
 
 use super::moment::{Moment, MomentJoint, loads};
@@ -65,6 +66,18 @@ pub(crate) struct Frame<'a> {
     pub(crate) center_of_mass: Option<Vector3<f64>>,
     /// Rows and columns by `Order::rows`.
     pub(crate) gradient: Option<Vec<Vec<f64>>>,
+    /// Single muscles, of a body whose muscles give joints their strength.
+    pub(crate) muscles: Option<MusclesOfFrame>,
+}
+
+/// Single muscles of a frame.
+pub(crate) struct MusclesOfFrame {
+    /// Names and tensions, N.
+    pub(crate) tensions: Vec<(String, f64)>,
+    /// The coordinate at which the muscles lack the greatest torque, and this torque, N m.
+    pub(crate) lack: Option<(String, f64)>,
+    /// By joint that muscles cross.
+    pub(crate) reactions: Vec<(String, ReactionText)>,
 }
 
 impl Order {
@@ -123,6 +136,7 @@ impl<'a> Frame<'a> {
             moments: order.joints.iter().map(|joint| joint.moment(model, body)).collect(),
             center_of_mass: body.kinematics().center_of_mass(model),
             gradient: None,
+            muscles: None,
         }
     }
 

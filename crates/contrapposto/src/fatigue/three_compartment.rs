@@ -7,7 +7,7 @@
 //! Older codes use `r R` whenever `MA >= TL`, which speeds recovery up during a constant hold; we do not.
 
 use super::REST_LOAD;
-use super::linear_step::LinearStep;
+use super::linear_step::{LinearStep, Shares};
 use serde::{Deserialize, Serialize};
 
 /// Rate of development and relaxation `LD = LR`, 1/s (the published value for both).
@@ -15,6 +15,10 @@ const DRIVE: f64 = 10.0;
 
 /// Longest integration step, s: half of the controller's time constant.
 const STEP: f64 = 0.05;
+
+/// Steps after which the controller has caught up with a constant load of any size to the last bits: nearly 5 s,
+/// 49 of its time constants.
+const SETTLING: u64 = 100;
 
 /// Longest time under one load, s: more than a day, after which every group stands at its steady state.
 const LONGEST_TIME: f64 = 1e5;
@@ -72,13 +76,31 @@ impl ThreeCompartment {
         let load = load.clamp(0.0, 1.0);
         let (steps, h) = steps(seconds);
         let mut shares = (start.active, start.fatigued);
-        for _ in 0..steps {
+        for step in 0..steps {
+            if step == SETTLING
+                && let Some(end) = self.held(shares, load, (steps - step, h))
+            {
+                shares = end;
+                break;
+            }
             shares = runge_kutta(shares, h, |active, fatigued| {
                 let (missing, resting) = (load - active, 1.0 - active - fatigued);
                 self.rates(active, fatigued, load, if missing > 0.0 { missing.min(resting) } else { missing })
             });
         }
         Compartments::of(shares.0, shares.1)
+    }
+
+    /// The shares after so many further steps of `h` s, once the controller has caught up with the load: with a constant `MA` the share `MF` goes one
+    /// way, so that a group which can carry the load before and after can carry it all the time, and the steps are one affine
+    /// map to a power. `None` of a group that cannot.
+    fn held(&self, (active, fatigued): Shares, load: f64, (times, h): (u64, f64)) -> Option<Shares> {
+        let can = |fatigued: f64| fatigued <= 1.0 - load;
+        let end = || {
+            let rates = |active: f64, fatigued: f64| self.rates(active, fatigued, load, load - active);
+            LinearStep::of(|a, b| runge_kutta((a, b), h, rates)).repeated(times).apply((active, fatigued))
+        };
+        can(fatigued).then(end).filter(|(_, fatigued)| can(*fatigued))
     }
 
     /// The same as a step, of a group that does not fail: enough of it rests, so that the controller drives `L (TL - MA)`.

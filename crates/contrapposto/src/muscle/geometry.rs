@@ -51,6 +51,17 @@ pub struct PathCorner {
     pub origin: CornerOrigin,
 }
 
+/// Force of a path on a segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPull {
+    /// Index of the segment; `None` for ground.
+    pub segment: Option<usize>,
+    /// Place at which it acts, in ground, m.
+    pub place: Vector3<f64>,
+    /// The force in ground axes, N for each newton of tension.
+    pub force: Vector3<f64>,
+}
+
 /// The line of a path in a posture.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Line {
@@ -137,6 +148,13 @@ impl PathGeometry {
     pub fn corners(&self, path: usize) -> impl ExactSizeIterator<Item = PathCorner> {
         let corner = |node: &Node| PathCorner { place: node.place, segment: node.segment, origin: node.kind };
         self.lines[path].nodes.iter().map(corner)
+    }
+
+    /// Forces of a tension of 1 N along a path on the segments that carry its corners, in the posture of the last update. The two forces of
+    /// a straight part within one segment, which cancel, are left out.
+    pub fn pulls(&self, path: usize) -> impl Iterator<Item = PathPull> {
+        let apart = pulls(&self.lines[path].nodes).filter(|(_, _, same)| !same);
+        apart.map(|(node, force, _)| PathPull { segment: node.segment, place: node.place, force })
     }
 
     /// The line of a path.
@@ -253,6 +271,20 @@ fn moving(model: &Model, paths: &Paths, path: usize, any: bool) -> Vec<usize> {
     (0..counts.len()).rev().filter(|&m| counts[m] > 0 && (any || counts[m] < carriers.len())).collect()
 }
 
+/// Forces of a tension of 1 N on the corners of a line, those of a straight part one after the other, and whether one segment carries both
+/// ends of the part.
+fn pulls(nodes: &[Node]) -> impl Iterator<Item = (&Node, Vector3<f64>, bool)> {
+    nodes.windows(2).flat_map(|pair| {
+        let [from, to] = [&pair[0], &pair[1]];
+        let straight = to.reference - from.reference;
+        let length = straight.norm();
+        let pulls = !matches!(from.kind, CornerOrigin::On(_)) && from.weight != 0.0 && length != 0.0;
+        let force = if pulls { straight * (from.weight / length) } else { Vector3::zeros() };
+        let same = from.segment == to.segment;
+        [(from, force, same), (to, -force, same)].into_iter().filter(move |_| pulls)
+    })
+}
+
 /// A tension of 1 N along a line, and the row of moment arms that it fills.
 struct Tension<'a> {
     model: &'a Model,
@@ -266,29 +298,16 @@ struct Tension<'a> {
 impl Tension<'_> {
     /// Adds the forces of all straight parts to the mobilities that carry their ends, and the work of points that move in their segment.
     fn pull(&mut self, nodes: &[Node], moving: &[usize], wrenches: &mut [(Vector3<f64>, Vector3<f64>)]) {
-        for pair in nodes.windows(2) {
-            let [from, to] = [&pair[0], &pair[1]];
-            if matches!(from.kind, CornerOrigin::On(_)) || from.weight == 0.0 {
-                continue;
-            }
-            let same = from.segment == to.segment;
+        for (node, force, same) in pulls(nodes) {
             // OpenSim leaves out the work of points that move against another point of the same segment.
             if same && self.rule == PathRule::OpenSim {
                 continue;
             }
-            let straight = to.reference - from.reference;
-            let length = straight.norm();
-            if length == 0.0 {
-                continue;
-            }
-            let direction = straight * (from.weight / length);
-            for (node, force) in [(from, direction), (to, -direction)] {
-                self.slide(node, &force);
-                let mobility = node.segment.and_then(|segment| self.model.segments[segment].mobility);
-                if let Some(m) = mobility.filter(|m| !same && moving.contains(m)) {
-                    wrenches[m].0 += force;
-                    wrenches[m].1 += node.place.cross(&force);
-                }
+            self.slide(node, &force);
+            let mobility = node.segment.and_then(|segment| self.model.segments[segment].mobility);
+            if let Some(m) = mobility.filter(|m| !same && moving.contains(m)) {
+                wrenches[m].0 += force;
+                wrenches[m].1 += node.place.cross(&force);
             }
         }
     }

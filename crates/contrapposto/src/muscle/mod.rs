@@ -32,7 +32,7 @@ pub use fiber::{
     PassiveFiberCurve, PassiveShape, Schutte1993, TendonCurve, TendonShape, Thelen2003,
 };
 pub(crate) use geometry::Line;
-pub use geometry::{PathCorner, PathGeometry};
+pub use geometry::{PathCorner, PathGeometry, PathPull};
 pub use hold::{MuscleHold, hold, hold_on};
 pub use ligament::{Ligament, LigamentLaw};
 pub use path::{Location, MovingPoint, Path, PathPoint, PathWrap, Paths};

@@ -3,11 +3,13 @@
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::muscle::Path;
-use contrapposto_report::{Carrier, Muscle, Muscles, PathPoint};
+use contrapposto_formats::ReactionText;
+use contrapposto_report::{Carrier, Muscle, Muscles, PathPoint, PressedJoint};
 use nalgebra::Isometry3;
 
 use crate::view::axes::Turn;
 use crate::view::muscle_work::{MusclesAtWork, radius};
+use crate::view::words::plain;
 
 /// The muscles of a body in postures, whose `kinematics` are those of the moments of `muscles`. `shown`: the coordinates of the page.
 pub(super) fn muscle_lines(
@@ -48,7 +50,30 @@ pub(super) fn muscle_lines(
         carriers: carriers.iter().map(places).collect(),
         lines: drawn,
         lacks: muscles.moments.iter().map(|moment| lack(&moment.missing)).collect(),
+        pressed: pressed(muscles),
     }
+}
+
+/// The joints that muscles cross, where the loads of all moments are known.
+fn pressed(muscles: &MusclesAtWork<'_>) -> Vec<PressedJoint> {
+    let Some(((first, rest), moments)) = muscles.moments.split_first().map(|parts| (parts, &muscles.moments)) else {
+        return vec![];
+    };
+    if rest.iter().any(|moment| moment.reactions.len() != first.reactions.len()) {
+        return vec![];
+    }
+    let of_joint = |(joint, (name, reaction)): (usize, &(String, ReactionText))| {
+        let over = |value: fn(&ReactionText) -> Option<f64>| {
+            moments.iter().map(|moment| value(&moment.reactions[joint].1).unwrap_or(0.0)).collect()
+        };
+        Some(PressedJoint {
+            name: plain(name),
+            along: plain(reaction.along.as_deref()?),
+            force: over(|reaction| reaction.compression_n),
+            weights: over(|reaction| reaction.body_weights),
+        })
+    };
+    first.reactions.iter().enumerate().filter_map(of_joint).collect()
 }
 
 /// The points of a muscle, and their orders.

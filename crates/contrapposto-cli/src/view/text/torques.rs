@@ -3,15 +3,17 @@
 use std::fmt::Write;
 
 use contrapposto::model::{CoordinateKind, Model, Side};
+use contrapposto_formats::ReactionText;
 use contrapposto_formats::motion::csv_cell;
 use contrapposto_formats::tissue::{Origin, SourcedModel};
 use serde::Serialize;
 
 use super::joint::AxisText;
+use super::reactions::reaction_table;
 use super::sources::{Source, StrengthAtText};
 use super::{Named, plain_table};
 use crate::view::moment::{Moment, MomentJoint};
-use crate::view::torque_rows::{Frame, Order, Row, Torques};
+use crate::view::torque_rows::{Frame, MusclesOfFrame, Order, Row, Torques};
 
 /// One frame in rad, m, N and N m.
 #[derive(Serialize)]
@@ -30,8 +32,27 @@ pub(crate) struct FrameText<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     values: Option<Named<'a, f64>>,
     center_of_mass: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none", flatten)]
+    muscles: Option<MusclesText<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     gradient: Option<&'a [Vec<f64>]>,
+}
+
+/// Single muscles, with the least sum of squares of activations.
+#[derive(Serialize)]
+struct MusclesText<'a> {
+    /// Tension of every muscle, that of passive fibres included.
+    muscle_forces_n: Named<'a, f64>,
+    /// The greatest torque that the muscles cannot give; `null`: they give all.
+    muscles_lack: Option<MissingText<'a>>,
+    /// By joint that muscles cross.
+    reactions: Named<'a, &'a ReactionText>,
+}
+
+#[derive(Serialize)]
+struct MissingText<'a> {
+    coordinate: &'a str,
+    torque_nm: f64,
 }
 
 #[derive(Serialize)]
@@ -107,6 +128,7 @@ pub(crate) fn json<'a>(opened: &'a SourcedModel, order: &'a Order, frame: &'a Fr
         joints: Named(order.joints.iter().zip(&frame.moments).map(|joint| moment(opened, joint)).collect()),
         values: (!order.values.is_empty()).then(|| Named(order.values.iter().map(value).collect())),
         center_of_mass: frame.center_of_mass.map(Into::into),
+        muscles: frame.muscles.as_ref().map(muscles),
         gradient: frame.gradient.as_deref(),
     }
 }
@@ -128,6 +150,14 @@ fn moment<'a>(opened: &'a SourcedModel, (joint, moment): (&'a MomentJoint, &Mome
         load,
     };
     (&joint.name, text)
+}
+
+fn muscles(of: &MusclesOfFrame) -> MusclesText<'_> {
+    MusclesText {
+        muscle_forces_n: Named(of.tensions.iter().map(|(name, tension)| (name.as_str(), *tension)).collect()),
+        muscles_lack: of.lack.as_ref().map(|(coordinate, torque_nm)| MissingText { coordinate, torque_nm: *torque_nm }),
+        reactions: Named(of.reactions.iter().map(|(name, reaction)| (name.as_str(), reaction)).collect()),
+    }
 }
 
 /// The source of a passive torque that muscles of the model give.
@@ -225,6 +255,10 @@ pub(crate) fn readable(model: &Model, order: &Order, frame: &Frame<'_>) -> Strin
     }
     if let Some(center) = frame.center_of_mass {
         let _ = write!(text, "\ncentre of mass {:.4}, {:.4}, {:.4} m\n", center.x, center.y, center.z);
+    }
+    if let Some(muscles) = &frame.muscles {
+        let joints = muscles.reactions.iter().map(|(name, reaction)| (name.as_str(), reaction, None));
+        let _ = write!(text, "\n{}", reaction_table(joints.collect()));
     }
     if let Some(gradient) = &frame.gradient {
         let mut table = plain_table();
