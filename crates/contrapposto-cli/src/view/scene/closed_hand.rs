@@ -15,8 +15,8 @@ const KNUCKLES: f64 = 0.535;
 /// Distance of the middle of the fingers at the knuckles from the plane of the hand, and its growth along the fingers.
 const DROOP: (f64, f64) = (0.055, 0.30);
 /// Radius of the arc of the middle of the fingers: about a handle of 3.5 cm, a fist closes by 200 degrees. Assumed.
-const RADIUS: f64 = 0.135;
-/// What lies this share of the radius or more off the middle of the fingers belongs to the thumb.
+const HANDLE_RADIUS: f64 = 0.135;
+/// The share of the radius off the middle of the fingers from which on a vertex belongs to the thumb.
 const THUMB: f64 = 0.7;
 /// The share of 255 from which on a vertex belongs to the hand.
 const OF_HAND: u16 = 128;
@@ -60,7 +60,7 @@ pub(super) fn closed(skin: &Skin, model: &Model, hands: &[usize]) -> Vec<Vector3
 
 /// A place of a hand of this length in its frame, after its fingers are closed; `palm`: the sign of z toward which the palm faces.
 fn bent(at: Vector3<f64>, length: f64, palm: f64) -> Vector3<f64> {
-    let (along, radius) = (-at.y - KNUCKLES * length, RADIUS * length);
+    let (along, radius) = (-at.y - KNUCKLES * length, HANDLE_RADIUS * length);
     let middle = DROOP.0 * length + DROOP.1 * along;
     let off = palm * at.z - middle;
     if along <= 0.0 || off > THUMB * radius {
