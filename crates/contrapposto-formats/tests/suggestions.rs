@@ -411,6 +411,14 @@ fn the_table_of_changes_has_hazards_and_the_times_of_weaker_people_beside_the_as
         Advice::new(&enough, &job, || changes[..1].to_vec(), || None, budget, trial).helping.len()
     };
     assert_eq!([ends(101.0), ends(99.0)], [1, 0]);
+    // Where only weaker people lack time, one that gives it to them helps, though the mean person has less of what nobody asks for.
+    let lack = Verdict { hazards: vec![], seconds: Some(300.0), fails_weaker: before.hardest, ..before.clone() };
+    let gives = |least: f64| {
+        let found = Verdict { hazards: vec![], ..with(VerdictKind::Holds, 0, Some(150.0), least) };
+        let trial = |_: &Change| Trial { verdict: Some(found.clone()), steps: 1 };
+        Advice::new(&lack, &job, || changes[..1].to_vec(), || None, budget, trial).helping.len()
+    };
+    assert_eq!([gives(110.0), gives(90.0), gives(81.0)], [1, 1, 0]);
     let weak = Verdict { hazards: vec![], ..with(VerdictKind::HeldUntil, 0, Some(60.0), 0.0) };
     let longer = |_: &Change| Trial { verdict: Some(Verdict { seconds: Some(90.0), ..weak.clone() }), steps: 1 };
     let advice = Advice::new(&weak, &job, || changes[..1].to_vec(), || None, budget, longer);
