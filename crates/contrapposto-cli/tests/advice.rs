@@ -6,6 +6,7 @@ mod support;
 
 use std::path::Path;
 
+use contrapposto::kinematics::Kinematics;
 use serde_json::Value;
 use support::contrapposto;
 
@@ -52,21 +53,34 @@ fn changes_of_a_held_weight_give_the_minutes_of_the_changed_file(command: &str) 
     let before = found["verdict"]["minutes"].as_f64().unwrap();
     let all = suggested(&found);
     assert!(all.iter().any(|(change, _)| change.contains("less load")), "{all:?}");
+    let nearer = nearer(&held(TARGET, KILOGRAMS));
     for (change, promised) in &all {
-        let lower = [TARGET[0], TARGET[1] - 0.1, TARGET[2]];
+        let moved = |by: f64| held([TARGET[0], TARGET[1] + by, TARGET[2]], KILOGRAMS);
         let text = match change.replace('\u{a0}', " ").as_str() {
-            "target of right hand 10 cm lower (height 1.15 m instead of 1.25 m)" => held(lower, KILOGRAMS),
+            "target of right hand 10 cm lower (height 1.15 m instead of 1.25 m)" => moved(-0.1),
+            "target of right hand 10 cm higher (height 1.35 m instead of 1.25 m)" => moved(0.1),
             "20 % less load (3.2 kg instead of 4 kg)" => held(TARGET, 0.8 * KILOGRAMS),
-            // The direction of "nearer" is that of the centre of mass, which a file does not name.
-            _ => continue,
+            change if change.starts_with("target of right hand 10 cm nearer (") => held(nearer, KILOGRAMS),
+            change => panic!("{change} was not written by hand"),
         };
         let alone = minutes(&job("changed.toml", text, &["--no-suggest"]));
         println!("{command}: {change}: {promised} min promised, {alone}");
         assert!((promised - alone).abs() < 1e-3 * alone, "{command}: {change}: {promised} min promised, {alone}");
         assert!(*promised > before, "{change}: {promised} min, without {before}");
     }
-    let counted = all.iter().filter(|(change, _)| change.contains("cm lower") || change.contains("less load")).count();
-    assert_eq!(counted, 2, "{all:?}");
+    let counted = |words: &str| all.iter().filter(|(change, _)| change.contains(words)).count();
+    assert_eq!(["cm lower", "cm nearer", "less load"].map(counted), [1, 1, 1], "{all:?}");
+}
+
+/// The target 10 cm nearer, level, to the centre of mass at the start.
+fn nearer(text: &str) -> [f64; 3] {
+    let scenario = contrapposto_formats::read_pose("job.toml", text.as_bytes(), None).unwrap();
+    let mut kinematics = Kinematics::new(&scenario.model);
+    kinematics.update(&scenario.model, &scenario.start).unwrap();
+    let center = kinematics.center_of_mass(&scenario.model).unwrap();
+    let (x, z) = (center.x - TARGET[0], center.z - TARGET[2]);
+    let share = 0.1 / x.hypot(z);
+    [TARGET[0] + share * x, TARGET[1], TARGET[2] + share * z]
 }
 
 #[test]
@@ -94,4 +108,41 @@ fn less_load_that_assess_suggests_gives_the_minutes_of_the_smaller_load() {
     let alone = minutes(&assess("hand_r 3.2kg", &["--no-suggest"]));
     assert!((promised - alone).abs() < 1e-9 * alone, "{promised} min promised, {alone}");
     assert!(*promised > found["verdict"]["minutes"].as_f64().unwrap());
+}
+
+/// A break of a minute after every ten, which `assess` promises, is what `--work` and `--break` compute of the same posture, held for a minute and
+/// repeated.
+#[test]
+fn a_break_that_assess_suggests_gives_the_minutes_of_the_repeated_job_with_that_break() {
+    let folder = tempfile::tempdir().unwrap();
+    for (angle, load, lasts) in
+        [(25, "hand_r 0.5kg", "held_until"), (20, "hand_r 0.6kg", "held_until"), (25, "hand_r 0.1kg", "holds")]
+    {
+        let held = |seconds: f64| {
+            let head = "time,elbow_flex_r_deg,elbow_flex_l_deg,arm_flex_r_deg";
+            let motion = format!("{head}\n0,90,20,{angle}\n{seconds},90,20,{angle}\n");
+            std::fs::write(folder.path().join("held.csv"), motion).unwrap();
+        };
+        let assess = |more: &[&str]| {
+            let command = ["assess", "adult", "held.csv", "--fixed-root", "--load", load, "--json"];
+            answer(folder.path(), &[&command, more].concat())
+        };
+        held(3600.0);
+        let found = assess(&[]);
+        let all = found["suggestions"].as_array().unwrap();
+        let promised = all.iter().find(|one| one["change"].as_str().unwrap().contains("break of a minute")).unwrap();
+        held(60.0);
+        let alone = assess(&["--repeat", "1h", "--work", "10min", "--break", "1min", "--no-suggest"]);
+        let verdict = &alone["verdict"];
+        println!("{load}: {promised}, alone {verdict}; without breaks {}", found["verdict"]["minutes"]);
+        assert_eq!((promised["kind"].as_str(), &promised["kind"]), (Some(lasts), &verdict["kind"]));
+        let alike = |promised: &Value, alone: &Value| match (promised.as_f64(), alone.as_f64()) {
+            (Some(promised), Some(alone)) => (promised - alone).abs() < 0.01 * alone,
+            (promised, alone) => promised == alone,
+        };
+        assert!(alike(&promised["minutes"], &verdict["minutes"]), "{promised} {verdict}");
+        assert!(alike(&promised["least_minutes"], &verdict["minutes_range"][0]), "{promised} {verdict}");
+        let without = found["verdict"]["minutes"].as_f64().unwrap();
+        assert!(promised["minutes"].as_f64().is_none_or(|minutes| minutes > 1.5 * without), "{promised} {without}");
+    }
 }

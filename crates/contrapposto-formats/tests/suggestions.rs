@@ -281,12 +281,84 @@ fn the_hazard_of_a_bent_spine_is_ended_by_changes_that_are_tried_for_it_and_thei
     assert_eq!((promised.hazards.len(), found.hazards.len()), (0, 0), "{}", found.sentence);
     let (promised, found) = (promised.seconds.unwrap(), found.seconds.unwrap());
     assert!((promised - found).abs() < 1e-3 * found, "{promised} s promised, {found} s");
+    // The box and the gaze 30 cm higher.
+    let by_hand = text.replace("[0.4, 0.3, 0]", "[0.4, 0.6, 0]").replace("[0.5, 0.3, 0]", "[0.5, 0.6, 0]");
+    the_run_by_hand_gives_what_the_change_promises(&scenario, &of_hazard[0], &by_hand);
     let advice = advised(&scenario, &summary, &before, usize::MAX, 2);
     println!("{:?}", advice.gains);
     let ended: Vec<&str> =
         advice.helping.iter().filter(|one| one.hazards == 0).map(|one| one.change.as_str()).collect();
     assert!(words.iter().all(|words| ended.contains(&words.as_str())), "{ended:?}");
     assert_eq!(advice.helping[0].hazards, 0);
+}
+
+/// A hand 10 cm beyond its reach is helped by a lower target; of one that is a metre beyond it, and of two places of one hand, nothing is tried.
+#[test]
+fn changes_are_tried_for_targets_out_of_reach_only_where_they_move_them_far_enough() {
+    let job = |height: f64, more: &str| text([0.1, height, 0.2], 0.1, "active", 1.0) + more;
+    let top = |text: &str| {
+        let scenario = read(text);
+        let (summary, verdict) = ran(&scenario);
+        (advised(&scenario, &summary, &verdict, usize::MAX, 1), verdict)
+    };
+    let (_, far) = top(&job(4.0, ""));
+    let reach = 4.0 - far.missed[0].distance;
+    let (near, verdict) = top(&job(reach + 0.08, ""));
+    assert_eq!(verdict.kind, VerdictKind::NotReached, "{}", verdict.sentence);
+    assert!(near.helping.iter().any(|one| one.change.contains("10 cm lower")), "{:?}", near.notes);
+    let (advice, _) = top(&job(reach + 1.0, ""));
+    let why = "No change was tried: the target is farther away than any of them would move it (30 cm at most).";
+    assert_eq!((advice.helping.len(), advice.notes.as_slice()), (0, [why.to_owned()].as_slice()));
+    let second = "[[task]]\nkind = \"point\"\nsegment = \"hand_r\"\ntarget_m = [0.3, 1.0, 0.2]\nabove_relief = true\n";
+    let two = text(TARGET, 0.1, "active", 1.0).replacen(
+        "[[task]]\nkind = \"effort\"",
+        &format!("{second}[[task]]\nkind = \"effort\""),
+        1,
+    );
+    let (advice, verdict) = top(&two);
+    assert!(verdict.missed[0].contradicts, "{}", verdict.sentence);
+    assert_eq!(advice.notes, ["No change was tried: no place of the body meets both targets."]);
+}
+
+/// Kind, hazards and times of a run of the file that was changed by hand are those of the change.
+fn the_run_by_hand_gives_what_the_change_promises(scenario: &Scenario, change: &Change, by_hand: &str) {
+    let (promised, found) = (try_run(scenario, change, || true).verdict.unwrap(), ran(&read(by_hand)).1);
+    let coordinates =
+        |verdict: &Verdict| verdict.hazards.iter().map(|hazard| hazard.coordinate).collect::<Vec<usize>>();
+    assert_eq!((promised.kind, coordinates(&promised)), (found.kind, coordinates(&found)), "{}", found.sentence);
+    for (promised, found) in [(promised.seconds, found.seconds), (promised.least, found.least)] {
+        println!("{change:?}: {promised:?} s promised, {found:?} s");
+        assert!(promised == found || (promised.unwrap() - found.unwrap()).abs() < 1e-3 * found.unwrap(), "{change:?}");
+    }
+}
+
+/// Somebody who pushes stands in stride. The angles of the legs are exchanged in the file.
+#[test]
+fn feet_that_are_exchanged_give_the_time_of_the_file_with_exchanged_legs() {
+    let text = include_str!("../../../scenarios/push.toml").replace("duration_s = 120", "duration_s = 2");
+    let mut by_hand = text.clone();
+    for joint in ["hip_flexion", "knee_angle", "ankle_angle"] {
+        let [right, left] = ["r", "l"].map(|side| format!("{joint}_{side}_deg"));
+        by_hand = by_hand.replace(&right, "other").replace(&left, &right).replace("other", &left);
+    }
+    assert_ne!(by_hand, text);
+    let scenario = read(&text);
+    let job = Job::from(&scenario);
+    assert!(changes(&job, &[]).contains(&Change::OtherFoot));
+    let words = "feet exchanged: the left foot ahead instead of the right foot";
+    assert_eq!(Change::OtherFoot.in_words(&job), words);
+    the_run_by_hand_gives_what_the_change_promises(&scenario, &Change::OtherFoot, &by_hand);
+}
+
+/// Two hands at a box come nearer alike, however far to a side each of them is.
+#[test]
+fn both_hands_of_a_box_come_nearer_alike() {
+    let scenario = read(include_str!("../../../scenarios/lift-box.toml"));
+    let job = Job::from(&scenario);
+    let nearer = changes(&job, &[]).into_iter().find(|change| change.in_words(&job).contains("nearer")).unwrap();
+    let Change::Targets(by, _) = nearer else { panic!("{nearer:?}") };
+    // The box is before the middle of the body, and the hands at its two sides.
+    assert!((by.x + 0.1).abs() < 1e-6 && by.z.abs() < 1e-6, "{by}");
 }
 
 /// The rows of a table of changes: hazards beside the times, which say whether weaker people reach the time that was asked.
@@ -332,6 +404,21 @@ fn the_table_of_changes_has_hazards_and_the_times_of_weaker_people_beside_the_as
     );
     // Neither a shorter time with both hazards nor a worse verdict helps.
     assert_eq!(rows.len(), 3, "{rows:?}");
+    // Nor does one that ends every hazard, but takes the asked time from weaker people, who have it without the change.
+    let enough = Verdict { least: Some(110.0), ..before.clone() };
+    let ends = |least: f64| {
+        let trial = |_: &Change| Trial { verdict: Some(with(VerdictKind::Holds, 0, Some(200.0), least)), steps: 1 };
+        Advice::new(&enough, &job, || changes[..1].to_vec(), || None, budget, trial).helping.len()
+    };
+    assert_eq!([ends(101.0), ends(99.0)], [1, 0]);
+    // Where only weaker people lack time, one that gives it to them helps, though the mean person has less of what nobody asks for.
+    let lack = Verdict { hazards: vec![], seconds: Some(300.0), fails_weaker: before.hardest, ..before.clone() };
+    let gives = |least: f64| {
+        let found = Verdict { hazards: vec![], ..with(VerdictKind::Holds, 0, Some(150.0), least) };
+        let trial = |_: &Change| Trial { verdict: Some(found.clone()), steps: 1 };
+        Advice::new(&lack, &job, || changes[..1].to_vec(), || None, budget, trial).helping.len()
+    };
+    assert_eq!([gives(110.0), gives(90.0), gives(81.0)], [1, 1, 0]);
     let weak = Verdict { hazards: vec![], ..with(VerdictKind::HeldUntil, 0, Some(60.0), 0.0) };
     let longer = |_: &Change| Trial { verdict: Some(Verdict { seconds: Some(90.0), ..weak.clone() }), steps: 1 };
     let advice = Advice::new(&weak, &job, || changes[..1].to_vec(), || None, budget, longer);

@@ -85,6 +85,7 @@ function fillHeader() {
   const end = report.headline.search(/\. (?=\p{Lu})/u) + 1 || report.headline.length;
   find("headline").textContent = report.headline.slice(0, end);
   find("headline").append(make("span", report.headline.slice(end)));
+  find("headline").lastChild.classList.toggle("in-hazard", /^\s*Hazard/.test(report.headline.slice(end)));
   for (const [name, text] of report.facts) {
     const fact = make("div");
     fact.append(make("dt", name), make("dd", text));

@@ -1,5 +1,6 @@
 //! The numbers that all pages share: the body, its joints and its supports in every moment.
 
+mod closed_hand;
 pub(crate) mod hazard;
 mod muscle_lines;
 mod skin;
@@ -12,6 +13,7 @@ use contrapposto_formats::animation::{joined_by, solids};
 use contrapposto_report::{Balance, Group, Joint, Moments, Muscles, Push, Report, Segment, Thing};
 use nalgebra::Vector3;
 
+use self::closed_hand::closed_hands;
 use self::hazard::hazard;
 use self::muscle_lines::muscle_lines;
 use self::skin::{Course, skin};
@@ -61,6 +63,7 @@ impl<'a> Scene<'a> {
     pub(crate) fn report(&self, moments: Moments, main: usize) -> Result<Report, Fail> {
         let model = self.model;
         let (shown, turn) = (shown(model), turn(model));
+        let closed = closed_hands(model, &self.stage);
         let surroundings = surfaces::surroundings(model, &self.stage, self.start, self.frames, &turn)?;
         let standing = self.frames.iter().filter_map(|frame| frame.standing.as_ref());
         let centers: Vec<[f64; 3]> = standing.map(|standing| turn.point(standing.center_of_mass)).collect();
@@ -73,7 +76,7 @@ impl<'a> Scene<'a> {
             body: model.name().to_owned(),
             moments,
             segments: self.segments(&shown, &turn)?,
-            skin: skin(&Course { model, start: self.start, frames: self.frames }, &shown, &turn)?,
+            skin: skin(&Course { model, start: self.start, frames: self.frames, closed: &closed }, &shown, &turn)?,
             joints: shown.iter().map(|&i| self.joint(i, &balanced)).collect::<Result<_, _>>()?,
             main: shown.iter().position(|&i| i == main).unwrap_or(0),
             supports: self.supports(&turn),

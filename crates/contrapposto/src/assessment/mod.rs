@@ -121,7 +121,8 @@ fn out_of_range(model: &Model, motion: &[(f64, Posture)], i: usize) -> Option<f6
         return None;
     }
     let values = motion.iter().filter_map(|(_, posture)| posture.values().get(i).copied());
-    let share = share_outside(values, coordinate.range);
+    let error = if coordinate.kind == CoordinateKind::Rotation { ANGLE_ERROR } else { 0.0 };
+    let share = share_outside(values, (coordinate.range.0 - error, coordinate.range.1 + error));
     (share >= NEARLY_ALL).then_some(share)
 }
 

@@ -26,7 +26,7 @@ pub use builder::ModelBuilder;
 pub use coordinate::{Coordinate, CoordinateKind, CoordinateSpec, MuscleGroup, Side};
 pub use error::ModelError;
 pub use joint::{Drive, JointKind, Motion};
-pub use names::{plain_group_name, plain_name};
+pub use names::{movements_in_words, plain_group_name, plain_name};
 pub(crate) use reduced::reduced;
 pub use segment_spec::SegmentSpec;
 pub use shape::{Capsule, Shape};

@@ -1,11 +1,12 @@
 //! Says which changes of a job help, and which were not tried.
 
 use super::budget::{Budget, Trial, within};
-use super::change::{Change, Job};
+use super::change::{Change, Job, SHELF};
 use super::gain::Gains;
 use super::largest::LargestLoad;
 use super::trial::Suggestion;
-use crate::verdict::{Line, Verdict, has_motors};
+use crate::tasks::Unit;
+use crate::verdict::{A_DAY, Line, Verdict, VerdictKind, has_motors};
 
 /// The sentence of a job with reserve.
 const NOTHING: &str = "Nothing needs to change";
@@ -45,7 +46,16 @@ impl Advice {
                 (false, true) => " for muscles and ligaments",
                 (false, false) => " for muscles",
             };
-            return Self { notes: vec![format!("{NOTHING}{about}.")], ..Self::default() };
+            // Where no time is asked, weaker people may tire, and nobody knows whether that is too early.
+            let who = if verdict.least.is_some_and(|least| least < A_DAY) && verdict.asked.is_none() {
+                " of people of mean strength"
+            } else {
+                ""
+            };
+            return Self { notes: vec![format!("{NOTHING}{about}{who}.")], ..Self::default() };
+        }
+        if let Some(why) = out_of_reach(verdict) {
+            return Self { notes: vec![why.to_owned()], ..Self::default() };
         }
         let changes = changes();
         let trials = within(budget, &changes, trial);
@@ -62,6 +72,19 @@ impl Advice {
         };
         let notes = notes(verdict, &helping, &tried, &not_tried);
         Self { helping, not_tried, gains, largest: None, notes }
+    }
+}
+
+/// The reason for which no change of a job is tried that misses its most important target by more than any change moves it.
+fn out_of_reach(verdict: &Verdict) -> Option<&'static str> {
+    let missed = verdict.missed.iter().find(|missed| missed.decides && verdict.kind == VerdictKind::NotReached)?;
+    let far = missed.unit == Some(Unit::Metre) && missed.distance > SHELF;
+    match (missed.contradicts, far) {
+        (true, _) => Some("No change was tried: no place of the body meets both targets."),
+        (false, true) => {
+            Some("No change was tried: the target is farther away than any of them would move it (30 cm at most).")
+        }
+        (false, false) => None,
     }
 }
 
@@ -82,11 +105,14 @@ fn heading(verdict: &Verdict, helping: &[Suggestion]) -> &'static str {
 /// The sentences about changes that do not help, or were not tried.
 fn notes(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tried: &[String]) -> Vec<String> {
     let all = tried.join("; ");
+    let others = tried.iter().filter(|change| helping.iter().all(|one| one.change != **change)).cloned();
+    let others: Vec<String> = others.collect();
+    let others = if others.is_empty() { String::new() } else { format!(" Tried without help: {}.", others.join("; ")) };
     let of_all = match (helping, tried.len()) {
         ([], 0) => None,
         ([], 1) => Some(format!("The one change that was tried does not help: {all}.")),
         ([], count) => Some(format!("None of the {count} changes that were tried helps: {all}.")),
-        _ if hazard_stays(verdict, helping) => Some(format!("No change that was tried ends every hazard: {all}.")),
+        _ if hazard_stays(verdict, helping) => Some(format!("No change that was tried ends every hazard.{others}")),
         _ => None,
     };
     let left = (!not_tried.is_empty()).then(|| format!("Not tried: {}.", not_tried.join("; ")));

@@ -17,7 +17,7 @@ use crate::verdict::HandLoad;
 /// A target is moved so far, m.
 const MOVED: f64 = 0.1;
 /// Of a job in hazard a target is moved so far up, too, m: what is lifted begins on a shelf or a pallet. Assumed.
-const SHELF: f64 = 0.3;
+pub(super) const SHELF: f64 = 0.3;
 /// A joint in hazard is asked to this share of the angle from which on there is one. Assumed.
 const WITHIN_HAZARD: f64 = 2.0 / 3.0;
 /// A lighter load is so much of the given one.
@@ -110,10 +110,10 @@ impl<'a> From<&Search<'a>> for Job<'a> {
 pub fn changes(job: &Job<'_>, hazards: &[Hazard]) -> Vec<Change> {
     let mut changes = vec![];
     let up = job.up();
-    if let (Some(&(_, target, _)), Some(up)) = (job.targets().first(), up) {
+    if let (Some(middle), Some(up)) = (job.middle_of_targets(), up) {
         changes.push(Change::Targets(-MOVED * up, "10 cm lower"));
         changes.push(Change::Targets(MOVED * up, "10 cm higher"));
-        let toward = job.center_of_mass().map(|center| center - target).map(|away| away - away.dot(&up) * up);
+        let toward = job.center_of_mass().map(|center| center - middle).map(|away| away - away.dot(&up) * up);
         if let Some(toward) = toward.filter(|away| away.norm() > 2.0 * MOVED) {
             changes.push(Change::Targets(MOVED * toward.normalize(), "10 cm nearer"));
         }
@@ -143,6 +143,13 @@ impl Job<'_> {
             _ => None,
         };
         tasks.filter_map(target).filter(|(segment, ..)| !self.carries(*segment)).collect()
+    }
+
+    /// The mean of the targets, so that two hands come nearer alike, ground, m.
+    fn middle_of_targets(&self) -> Option<Vector3<f64>> {
+        let targets = self.targets();
+        let sum: Vector3<f64> = targets.iter().map(|(_, target, _)| target).sum();
+        (!targets.is_empty()).then(|| sum / targets.len() as f64)
     }
 
     /// Upward, of length 1; `None` without gravity.

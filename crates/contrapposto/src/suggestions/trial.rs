@@ -120,15 +120,21 @@ impl Suggestion {
 
     /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards and
     /// hands with much weight or for longer; where no muscle
-    /// limits the mean person before or after, longer for weaker ones. Of those that are equally safe the ones come first with which weaker people
+    /// limits the mean person before or after, and where only weaker people do not reach the asked time, longer for these. A change with fewer hazards with which weaker people no longer reach the
+    /// asked time does not help. Of those that are equally safe the ones come first with which weaker people
     /// reach the asked time.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
         let (before, least_before) = times(verdict.seconds, verdict.least);
         let longer = |one: &Self| {
             let (after, least_after) = times(one.seconds, one.least);
-            after > LONGER * before || (after.is_infinite() && least_after > LONGER * least_before)
+            // Of a job that only weaker people do not hold their time counts.
+            let weaker_lack = verdict.kind == VerdictKind::Holds && one.asked.is_some() && !one.reaches(least_before);
+            let of_weaker = weaker_lack || after.is_infinite();
+            after > LONGER * before || (of_weaker && least_after > LONGER * least_before)
         };
-        let safer = |one: &Self| one.risks() < verdict.risks();
+        // An end of a hazard is no help to those who no longer reach the asked time for it.
+        let keeps = |one: &Self| !one.reaches(least_before) || one.reaches(times(one.seconds, one.least).1);
+        let safer = |one: &Self| one.risks() < verdict.risks() && keeps(one);
         let equally_safe = |one: &Self| one.risks() == verdict.risks();
         let better = |one: &Self| safer(one) || equally_safe(one) && longer(one);
         let helps =

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::model::{Model, plain_name};
 use crate::statics::{FixedIn, Load, LoadKind};
 
 /// Most weights and forces that are named one by one.
@@ -44,6 +45,41 @@ pub(crate) fn amounts_in_words(amounts: &[Amount], share: f64) -> String {
     words.join(" and ")
 }
 
+/// ` under its load of 15 kg and a force of 50 N on left hand toward +x`; nothing without loads, and of many.
+pub(super) fn burden_in_words(model: &Model, loads: &[Load]) -> String {
+    let all = amounts(loads);
+    if !(1..=MOST_AMOUNTS).contains(&all.len()) {
+        return String::new();
+    }
+    let in_words = |&(amount, unit): &Amount| match unit {
+        "kg" => format!("its load of {}\u{a0}kg", number(amount)),
+        "N" => format!("a force of {}\u{a0}N{}", number(amount), force_in_words(model, loads).unwrap_or_default()),
+        _ => format!("a moment of {}\u{a0}{unit}", number(amount)),
+    };
+    format!(" under {}", all.iter().map(in_words).collect::<Vec<_>>().join(" and "))
+}
+
+/// ` on right hand and left hand toward +x` (a ground axis, which is none without a direction in the world), of forces of one direction.
+fn force_in_words(model: &Model, loads: &[Load]) -> Option<String> {
+    let (mut parts, mut sum, mut all): (Vec<String>, _, _) = (vec![], Vector3::zeros(), 0.0);
+    for load in loads {
+        let LoadKind::Force(force, frame) = load.kind else { continue };
+        if frame != FixedIn::World {
+            return None;
+        }
+        let name = plain_name(&model.segments()[load.segment].name);
+        if !parts.contains(&name) {
+            parts.push(name);
+        }
+        (sum, all) = (sum + force, all + force.norm());
+    }
+    let along = |k: usize| (sum[k].abs() > ONE_DIRECTION * all).then(|| (sum[k] > 0.0, ["x", "y", "z"][k]));
+    let direction = (0..3).find_map(along).map_or_else(String::new, |(positive, axis)| {
+        format!(" toward {}{axis}", if positive { "+" } else { "\u{2212}" })
+    });
+    (sum.norm() > ONE_DIRECTION * all).then(|| format!(" on {}{direction}", parts.join(" and ")))
+}
+
 /// `2.4`, `12`, `0.05`: without zeros at the end.
 fn number(value: f64) -> String {
     if value >= 99.5 {
@@ -68,6 +104,25 @@ mod tests {
         assert_eq!(amounts(&box_and_pull), [(15.0, "kg"), (50.0, "N")]);
         assert_eq!(amounts(&[force([100.0, 0.0, 0.0]), force([100.0, 0.0, 0.0])]), [(200.0, "N")]);
         assert_eq!(amounts(&[force([10.0, 0.0, 0.0]), force([0.0, 20.0, 0.0])]), [(10.0, "N"), (20.0, "N")]);
+    }
+
+    #[test]
+    fn a_fall_is_under_weights_and_under_forces_with_their_part_and_direction() {
+        let model = crate::model::adult(&crate::model::Adult::right_arm()).unwrap();
+        let hand = model.segment("hand_r").unwrap();
+        let weight = Load { segment: hand, point: Vector3::zeros(), kind: LoadKind::Weight(15.0) };
+        let pull = |newtons| Load { segment: hand, ..force(newtons) };
+        let words = |loads: &[Load]| burden_in_words(&model, loads).replace('\u{a0}', " ");
+        assert_eq!(words(&[]), "");
+        assert_eq!(words(&[weight]), " under its load of 15 kg");
+        assert_eq!(words(&[pull([400.0, 0.0, 0.0])]), " under a force of 400 N on right hand toward +x");
+        let both = [weight, pull([0.0, -30.0, 0.0]), pull([0.0, -20.0, 0.0])];
+        assert_eq!(words(&both), " under its load of 15 kg and a force of 50 N on right hand toward \u{2212}y");
+        assert_eq!(words(&[pull([30.0, 0.0, 40.0])]), " under a force of 50 N on right hand");
+        assert_eq!(
+            words(&[pull([30.0, 0.0, 0.0]), pull([0.0, 0.0, 40.0])]),
+            " under a force of 30 N and a force of 40 N"
+        );
     }
 
     #[test]

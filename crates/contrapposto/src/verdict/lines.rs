@@ -4,7 +4,7 @@ use super::words::{A_DAY, enumerated, has_no_strength, how_long, in_words, perce
 use super::{Failure, Findings, HandLoad, TIRED, VerdictKind, Who, muscles_or_motors};
 use crate::contact::Slip;
 use crate::joint_torques::{GroupLoad, Hazard, judged_parts};
-use crate::model::Model;
+use crate::model::{Model, movements_in_words};
 
 /// Load below which no muscle counts as working: half of the last digit that is shown. Derived.
 const NO_WORK: f64 = 0.005;
@@ -12,7 +12,7 @@ const NO_WORK: f64 = 0.005;
 /// A finding behind a verdict.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// `Fails first`, `Hardest worked`, `Most tired`, `Repeats`, `Relief`, `Hazard`, `Later`, `Grip`, `Missed besides` or `Slip`.
+    /// `Fails first`, `Hardest worked`, `Most tired`, `Repeats`, `Relief`, `Hazard`, `Later`, `Grip`, `Missed besides`, `Slip` or `In words`.
     pub name: &'static str,
     /// The finding, without a full stop.
     pub text: String,
@@ -30,7 +30,7 @@ impl Line {
 
 impl Findings {
     /// The lines below the sentence of a verdict of this kind.
-    pub(super) fn lines(&self, model: &Model, kind: VerdictKind) -> Vec<Line> {
+    pub(super) fn lines(&self, model: &Model, kind: VerdictKind, sentence: &str) -> Vec<Line> {
         let mut lines = vec![];
         let mut line = |name: &'static str, text: Option<String>| {
             lines.extend(text.map(|text| Line { name, text: muscles_or_motors(model, &text) }));
@@ -56,6 +56,8 @@ impl Findings {
         }
         line("Missed besides", self.missed_besides());
         line("Slip", self.slip_in_words().filter(|_| kind != VerdictKind::CannotStand));
+        let named = lines.iter().fold(sentence.to_owned(), |all, line| all + " " + &line.text);
+        lines.extend(movements_in_words(&named).map(|text| Line { name: "In words", text }));
         lines
     }
 
@@ -96,6 +98,7 @@ impl Findings {
             .filter(|_| self.repeats.is_none())
             .zip(own.map(|own| percent(own.who.load)).filter(|end| *end != greatest));
         let end = end.map(|(time, end)| match how_long(time) {
+            _ if time <= 0.0 => format!(" at the start ({end} at the end)"),
             at if self.asked.map(how_long).as_ref() == Some(&at) => {
                 format!(" shortly before the end ({end} at the end)")
             }
@@ -148,7 +151,7 @@ impl Findings {
             let limit = if limit { "; that is longer than the study allowed" } else { "" };
             let shorter = match hazard.row.seconds().zip(seconds) {
                 Some((limit, seconds)) if seconds < limit && !told.contains(&hazard.row.finding.as_str()) => {
-                    format!("; of {} the study says little", how_long(seconds))
+                    format!("; the study has no figure for {}", how_long(seconds))
                 }
                 _ => String::new(),
             };

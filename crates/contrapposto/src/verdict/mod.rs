@@ -29,6 +29,7 @@ mod run;
 mod spread;
 mod words;
 
+use amounts::burden_in_words;
 pub(crate) use amounts::{Amount, MOST_AMOUNTS, amounts, amounts_in_words};
 pub use hands::HandLoad;
 pub use lines::Line;

@@ -2,8 +2,7 @@
 
 use super::missed::unit;
 use super::{
-    Failure, Findings, MOST_AMOUNTS, Missed, Nearest, Verdict, VerdictKind, Who, amounts, amounts_in_words, has_motors,
-    muscles_or_motors,
+    Failure, Findings, Missed, Nearest, Verdict, VerdictKind, Who, burden_in_words, has_motors, muscles_or_motors,
 };
 use crate::contact::Slip;
 use crate::model::{Model, plain_group_name, plain_name};
@@ -42,7 +41,13 @@ impl Findings {
             None if self.dynamics => format!("{sentence} Inertia of the motion counts."),
             None => sentence,
         };
-        let (lines, slip) = (self.lines(model, kind), self.noticed_slip());
+        let is_told =
+            kind == VerdictKind::CannotBeDone && self.hardest.is_some_and(|(group, _)| group.load > FAR_TOO_MUCH);
+        let sentence = match self.out_of_range.is_empty() || is_told {
+            true => sentence,
+            false => format!("{sentence} This is in doubt: {}.", self.doubt(model)),
+        };
+        let (lines, slip) = (self.lines(model, kind, &sentence), self.noticed_slip());
         let fails = match kind {
             VerdictKind::HeldUntil => self.fails,
             VerdictKind::Holds => self.fails_later().copied(),
@@ -115,12 +120,7 @@ impl Findings {
             return format!("Cannot stand: supports slide by {}{when}.", slip_in_words(slip));
         }
         let Some((missing, time)) = self.missing else { return String::new() };
-        let (when, loads) = (when(time).unwrap_or_default(), amounts(&self.loads));
-        let under = if (1..=MOST_AMOUNTS).contains(&loads.len()) {
-            format!(" under its load of {}", amounts_in_words(&loads, 1.0))
-        } else {
-            String::new()
-        };
+        let (when, under) = (when(time).unwrap_or_default(), burden_in_words(model, &self.loads));
         let doubt = self.heavier_than_the_body(model).unwrap_or_default();
         format!("Cannot stand: the supports do not hold the body{under}{when}; {missing}.{doubt}")
     }

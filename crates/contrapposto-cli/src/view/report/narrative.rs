@@ -62,7 +62,7 @@ pub(super) fn write(
 
 /// No muscle group needed relief.
 fn of_rest(seconds: f64) -> String {
-    format!("In {} no muscle became so tired that it needed relief.", how_long(seconds))
+    format!("In {} no muscle of a person of mean strength became so tired that it needed relief.", how_long(seconds))
 }
 
 /// Whether muscles that carry the pelvis to a side needed relief.

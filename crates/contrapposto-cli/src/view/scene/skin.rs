@@ -6,6 +6,7 @@ use contrapposto::posture::Posture;
 use contrapposto_formats::animation::{Skin, joined_by};
 use contrapposto_report as page;
 
+use super::closed_hand::closed;
 use crate::fail::Fail;
 use crate::view::axes::Turn;
 use crate::view::frame::Frame;
@@ -15,6 +16,8 @@ pub(super) struct Course<'a> {
     pub(super) model: &'a Model,
     pub(super) start: &'a [f64],
     pub(super) frames: &'a [Frame],
+    /// Hands that hold something.
+    pub(super) closed: &'a [usize],
 }
 
 /// The skin; `None` for a body without one. `shown`: the coordinates of the page's joints.
@@ -32,7 +35,7 @@ pub(super) fn skin(course: &Course<'_>, shown: &[usize], turn: &Turn) -> Result<
         shares: bone.shares,
     };
     Ok(Some(page::Skin {
-        vertices: skin.vertices.iter().map(|vertex| turn.point(*vertex)).collect(),
+        vertices: closed(&skin, course.model, course.closed).into_iter().map(|vertex| turn.point(vertex)).collect(),
         triangles: skin.triangles.clone(),
         light: skin.light(),
         bones: skin.bones.clone(),
