@@ -119,10 +119,9 @@ impl Suggestion {
     }
 
     /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards and
-    /// hands with much weight or for longer; where no muscle
-    /// limits the mean person before or after, and where only weaker people do not reach the asked time, longer for these. A change with fewer hazards with which weaker people no longer reach the
-    /// asked time does not help. Of those that are equally safe the ones come first with which weaker people
-    /// reach the asked time.
+    /// hands with much weight or for longer. Where no muscle limits the mean person before or after, and where only weaker people do
+    /// not reach the asked time, it is longer for these. A change with fewer hazards with which weaker people no longer reach the asked
+    /// time does not help. Of those that are equally safe the ones come first with which weaker people reach the asked time.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
         let (before, least_before) = times(verdict.seconds, verdict.least);
         let longer = |one: &Self| {
