@@ -666,8 +666,9 @@ fn a_job_that_is_held_for_a_time_says_who_fails_first_and_what_helps_most() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     let lines: Vec<&str> = run.stdout.lines().collect();
     assert!(lines[0].starts_with("Can be held ") && lines[0].ends_with(" fails first."), "{}", lines[0]);
-    assert!(lines[1].starts_with(" What would help"), "{}", lines[1]);
-    assert!(lines[2].starts_with(" as it is "), "{}", lines[2]);
+    assert_eq!(lines[1], "In words: shoulder flexion raises the arm forward.");
+    assert!(lines[2].starts_with(" What would help"), "{}", lines[2]);
+    assert!(lines[3].starts_with(" as it is "), "{}", lines[3]);
     let summary: Value = serde_json::from_slice(&std::fs::read(folder.path().join("summary.json")).unwrap()).unwrap();
     let minutes = summary["verdict"]["minutes"].as_f64().unwrap();
     assert!((60.0 * minutes - summary["failed_first"]["at_s"].as_f64().unwrap()).abs() < 1e-9);
