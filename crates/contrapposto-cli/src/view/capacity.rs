@@ -142,7 +142,7 @@ pub(crate) fn assumptions(
     let mut all = vec![
         "The force is the one that the body exerts, besides the loads of the scenario; posture and places of the supports do not change."
             .to_owned(),
-        "Strengths are those of single muscle groups at the present angles; that of the grip and of the skin is not counted.".to_owned(),
+        "Strengths are those at the present angles; that of the grip and of the skin is not counted.".to_owned(),
         "Friction is a pyramid inside of its cone: where friction limits, the force is up to 29 % below that of the cone.".to_owned(),
     ];
     if by_muscles {

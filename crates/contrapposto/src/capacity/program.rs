@@ -30,7 +30,7 @@ pub(super) struct Joint {
 /// One equation: a rate at which torques are in equilibrium.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
-    pub(super) rate: usize,
+    rate: usize,
     /// Factor of the equation, 1/(N m) or 1/N.
     pub(super) scale: f64,
     /// `None` for the root, and where muscles give the torque.
@@ -88,7 +88,8 @@ impl Program {
         contact.update(model, torques.kinematics_by_axes(), torques.angles(), required);
         let Some(rows) = rows(situation, station, demand, &torques, &contact) else { return Ok(None) };
         let edges = edges(&contact, &rows);
-        let muscles = torques.muscles().map_or_else(Vec::new, |muscles| pulls(model, muscles, demand, &rows));
+        let equations: Vec<(usize, f64)> = rows.iter().map(|row| (row.rate, row.scale)).collect();
+        let muscles = torques.muscles().map_or_else(Vec::new, |muscles| pulls(model, muscles, demand, &equations));
         let mut right: Vec<f64> = rows.iter().map(|row| row.scale * (required[row.rate] + row.lower())).collect();
         for edge in edges.iter().filter(|edge| edge.lower != 0.0) {
             right.iter_mut().zip(&edge.column).for_each(|(right, entry)| *right -= edge.lower * entry);

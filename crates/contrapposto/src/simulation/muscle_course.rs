@@ -252,7 +252,7 @@ impl MuscleCourse {
         }
     }
 
-    /// When the muscles of a person who takes breaks fail, s of work and breaks; a person who has not failed at the end of the run, `time` s of work
+    /// Time at which the muscles of a person who takes breaks fail, s of work and breaks; a person who has not failed at the end of the run, `time` s of work
     /// after its start, holds the last posture on.
     fn failure_with_breaks(
         &self,
