@@ -11,9 +11,11 @@ mod shared;
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::model::Side;
+use contrapposto::model::data::library;
 use contrapposto::muscle::{MuscleFatigue, hold};
 use contrapposto::posture::Posture;
 use contrapposto::simulation::{Run, Scenario};
+use contrapposto::suggestions::{Worked, with_breaks};
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::{MuscleUse, ScenarioMuscles};
 use contrapposto_formats::{RunScenario, read_run};
@@ -124,6 +126,78 @@ fn muscles_of_a_held_posture_fail_when_a_hold_of_it_fails_whether_the_run_lasts_
         } else {
             assert_eq!(course.final_groups[0].seconds_left, Some(mean.time - summary.end_time));
         }
+    }
+}
+
+/// Time at which a muscle that is alone on its side of a joint fails under a steady load with a break of a minute every ten minutes, by small steps of its
+/// law, s of work and breaks.
+fn fails_with_breaks(law: &FatigueLaw, load: f64) -> f64 {
+    const STEP: f64 = 0.05;
+    let (mut state, mut time) = (law.start(0.0, load), 0.0);
+    for _ in 0..200 {
+        for _ in 0..12_000 {
+            state = law.advance(state, load, STEP);
+            time += STEP;
+            if state.level(load) >= 1.0 {
+                return time;
+            }
+        }
+        state = law.advance(state, 0.0, 60.0);
+        time += 60.0;
+    }
+    f64::INFINITY
+}
+
+/// Times at which weaker people and those of mean strength fail with breaks, by the law of the muscle in front, with a load of so many kilograms.
+fn expected_with_breaks(bytes: &str, heavy: &str) -> [f64; 2] {
+    let (scenario, _) = scenario(bytes.as_bytes(), heavy, MuscleUse::Strength);
+    let body = at_start(&scenario, bytes.as_bytes());
+    let share = body.muscle_share(&scenario.model).unwrap();
+    let front = body.muscles().unwrap().about_axes().moment_arms(0)[share.rates[0]];
+    let load = share.torques[0] / (front * share.forces[0]);
+    let law = FatigueLaw::ThreeCompartment(share.laws[0].clone());
+    let groups = scenario.model.coordinates()[0].groups.as_ref().unwrap();
+    let (variation, _) = library().strength_variation(&groups[0].name).unwrap();
+    [load / (1.0 - variation), load].map(|load| fails_with_breaks(&law, load))
+}
+
+/// Times with breaks of people whose muscles tire in a run, and whether the suggestion of breaks says the same.
+fn found_with_breaks(scenario: &Scenario) -> Option<[f64; 2]> {
+    let mut run = Run::new(scenario).unwrap();
+    while run.next_sample().unwrap().is_some() {}
+    let summary = run.summary();
+    let muscles = summary.muscles.as_ref().unwrap();
+    let groups = Worked::in_run(scenario, &summary);
+    assert!(groups.is_empty(), "groups have the fatigue of muscles");
+    let verdict = Verdict::of_run(scenario, &summary);
+    let job = (scenario.run.end(), (0.0, summary.end_time));
+    let promised = with_breaks((&groups, Some(muscles)), job.0, job.1, &verdict);
+    let found = muscles.with_breaks.map(|times| times.map(|time| time.unwrap_or(f64::INFINITY)));
+    assert_eq!(promised.is_some(), found.is_some());
+    if let (Some(promised), Some([weaker, mean])) = (promised, found) {
+        assert_eq!((promised.seconds.unwrap_or(f64::INFINITY), promised.least), (mean, Some(weaker)));
+    }
+    found
+}
+
+#[test]
+fn people_who_take_breaks_hold_on_as_long_as_the_law_of_their_one_muscle_says_whether_the_run_lasts_so_long_or_not() {
+    let bytes = arm();
+    for (kilograms, seconds) in [("22.5", [601.0, 900.0, 2500.0]), ("17", [601.0, 1150.0, 1500.0])] {
+        let heavy = |seconds: f64| held(seconds, "").replace("mass_kg = 14", &format!("mass_kg = {kilograms}"));
+        let expected = expected_with_breaks(&bytes, &heavy(1.0));
+        println!("{kilograms} kg: weaker people fail after {:.2} s, mean ones after {:.2} s", expected[0], expected[1]);
+        assert!(expected[1] > 1200.0 && expected[1] > expected[0] + 300.0, "{expected:?}");
+        for seconds in seconds {
+            let (scenario, _) = scenario(bytes.as_bytes(), &heavy(seconds), MuscleUse::Strength);
+            let found = found_with_breaks(&scenario).unwrap();
+            println!("a run of {seconds} s: {found:?}");
+            // Muscles work in pieces of half a second.
+            let alike = |(found, expected): (&f64, &f64)| found == expected || (found - expected).abs() < 0.6;
+            assert!(found.iter().zip(&expected).all(alike), "{found:?} {expected:?}");
+        }
+        let (short, _) = scenario(bytes.as_bytes(), &heavy(600.0), MuscleUse::Strength);
+        assert_eq!(found_with_breaks(&short), None, "too short for a break");
     }
 }
 

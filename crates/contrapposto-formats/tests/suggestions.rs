@@ -169,7 +169,8 @@ fn a_budget_that_is_used_up_leaves_the_changes_of_least_promise_which_are_named_
 fn a_break_a_minute_every_ten_gives_the_time_of_small_steps_of_the_law() {
     let scenario = read(&text(TARGET, 0.17 * KILOGRAMS, "active", LONG));
     let (summary, verdict) = ran(&scenario);
-    let promised = with_breaks(&Worked::in_run(&scenario, &summary), LONG, (0.0, summary.end_time), &verdict).unwrap();
+    let promised =
+        with_breaks((&Worked::in_run(&scenario, &summary), None), LONG, (0.0, summary.end_time), &verdict).unwrap();
     // The group that fails first without breaks, or is worked hardest: its load and its law in steps of 0.05 s.
     let who = verdict.who.unwrap();
     let groups = scenario.model.coordinates()[who.coordinate].groups.as_ref().unwrap();
@@ -492,8 +493,9 @@ fn the_largest_load_holds_on_its_own_and_five_percent_more_does_not() {
 fn a_break_gives_weaker_people_more_time_than_they_have_without_and_less_than_the_mean_person_has() {
     let scenario = read(&text(TARGET, 0.17 * KILOGRAMS, "active", LONG));
     let (summary, verdict) = ran(&scenario);
-    let breaks =
-        |end: f64| with_breaks(&Worked::in_run(&scenario, &summary), end, (0.0, summary.end_time), &verdict).unwrap();
+    let breaks = |end: f64| {
+        with_breaks((&Worked::in_run(&scenario, &summary), None), end, (0.0, summary.end_time), &verdict).unwrap()
+    };
     let (with, without) = (breaks(LONG).least.unwrap(), verdict.least.unwrap());
     println!("weaker people: {without} s without breaks, {with} s with them; mean {:?}", breaks(LONG).seconds);
     assert!(with >= without * 0.999, "{with} {without}");

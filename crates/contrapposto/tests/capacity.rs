@@ -70,7 +70,13 @@ impl Body {
     }
 
     fn situation(&self) -> Situation<'_> {
-        Situation { model: &self.model, posture: &self.posture, loads: &self.loads, supports: &self.supports }
+        Situation {
+            model: &self.model,
+            posture: &self.posture,
+            loads: &self.loads,
+            supports: &self.supports,
+            muscles: None,
+        }
     }
 
     fn capacity(&self) -> Capacity {

@@ -27,7 +27,13 @@ pub(crate) fn capacity(args: &CapacityArgs) -> Result<(), Fail> {
     let job = carry_out(&args.scenario, 'A')?;
     let station = station(&job.model, args)?;
     let posture = Posture::new(job.posture.clone());
-    let situation = Situation { model: &job.model, posture: &posture, loads: &job.loads, supports: &job.supports };
+    let situation = Situation {
+        model: &job.model,
+        posture: &posture,
+        loads: &job.loads,
+        supports: &job.supports,
+        muscles: job.muscles.as_ref(),
+    };
     let refused = |error| Fail::Refused(format!("{}: {error}", job.file));
     let mut forces = Forces::of(&situation, station, args.hold).map_err(refused)?;
     let held = held(&job.model, &posture, &job.loads, &job.supports)?;
@@ -108,7 +114,7 @@ fn text(
         model: model.name().to_owned(),
         posture: job.how.clone(),
         verdict: VerdictText::new(model, verdict),
-        sentence: without_force(args.hold, verdict),
+        sentence: without_force(args.hold, verdict, job.shares()),
         at,
         hold_s: args.hold,
         weakest: None,
@@ -119,6 +125,7 @@ fn text(
         assumptions: assumptions(
             args.hold,
             held_by_hand,
+            job.shares(),
             forces.as_ref().is_none_or(|forces| forces.weaker_can_hold()),
         ),
         files,
@@ -137,10 +144,14 @@ fn text(
 }
 
 /// The first line of a posture that cannot be held.
-fn without_force(hold: Option<f64>, verdict: &Verdict) -> String {
+fn without_force(hold: Option<f64>, verdict: &Verdict, by_muscles: bool) -> String {
     match hold {
         Some(seconds) if verdict.kind.is_done() => {
             format!("No force can be held for {}, because the posture cannot. {}", how_long(seconds), verdict.sentence)
+        }
+        // Groups that are strong enough one by one may not be so together: they have muscles in common.
+        None if verdict.kind.is_done() && by_muscles => {
+            format!("No force: the muscles together cannot give the torques of the posture. {}", verdict.sentence)
         }
         _ => verdict.in_words().trim_end().to_owned(),
     }

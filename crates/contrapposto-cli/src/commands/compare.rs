@@ -85,6 +85,7 @@ pub(super) fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fa
         frame: Some(frame),
         things,
         supports: scenario.supports,
+        muscles: scenario.muscles,
         model: scenario.model,
         file,
     })
@@ -107,6 +108,7 @@ fn posed(source: ScenarioFile, letter: char) -> Result<ComparedPosture, Fail> {
         things: scenario.things,
         loads: scenario.loads,
         supports: scenario.supports,
+        muscles: scenario.muscles,
         model: scenario.model,
         file,
     })

@@ -36,11 +36,8 @@ pub(crate) fn advice_of_run(
     let Some(budget) = suggest.budget(steps) else { return Advice::default() };
     let job = Job::from(scenario);
     let groups = Worked::in_run(scenario, summary);
-    let breaks = || match summary.muscles {
-        // Breaks are counted with the laws of groups; muscles that tire one by one have none.
-        Some(_) => None,
-        None => with_breaks(&groups, scenario.run.end(), (0.0, summary.end_time), verdict),
-    };
+    let worked = (groups.as_slice(), summary.muscles.as_ref());
+    let breaks = || with_breaks(worked, scenario.run.end(), (0.0, summary.end_time), verdict);
     Advice::new(
         verdict,
         &job,

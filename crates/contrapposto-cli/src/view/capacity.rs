@@ -133,13 +133,25 @@ pub(crate) fn range(ends: [f64; 2]) -> String {
 }
 
 /// The assumptions of the computation, a sentence each.
-pub(crate) fn assumptions(hold: Option<f64>, held_by_hand: bool, weaker_can_hold: bool) -> Vec<String> {
+pub(crate) fn assumptions(
+    hold: Option<f64>,
+    held_by_hand: bool,
+    by_muscles: bool,
+    weaker_can_hold: bool,
+) -> Vec<String> {
     let mut all = vec![
         "The force is the one that the body exerts, besides the loads of the scenario; posture and places of the supports do not change."
             .to_owned(),
-        "Strengths are those of single muscle groups at the present angles; that of the grip and of the skin is not counted.".to_owned(),
+        "Strengths are those at the present angles; that of the grip and of the skin is not counted.".to_owned(),
         "Friction is a pyramid inside of its cone: where friction limits, the force is up to 29 % below that of the cone.".to_owned(),
     ];
+    if by_muscles {
+        all.push(
+            "Muscles of the model share the torques of the joints that they cross; each is as strong and tires as the group for which it \
+             works."
+                .to_owned(),
+        );
+    }
     if let Some(seconds) = hold {
         all.push(format!(
             "Everybody is rested at first and holds the force for {}; nobody moves meanwhile.",

@@ -22,7 +22,7 @@ pub struct Body {
 impl Body {
     pub fn capacity(&self) -> Option<Capacity> {
         let Self { model, posture, supports, station } = self;
-        let situation = Situation { model, posture, loads: &[], supports };
+        let situation = Situation { model, posture, loads: &[], supports, muscles: None };
         Capacity::new(&situation, *station, Demand::default()).unwrap()
     }
 }

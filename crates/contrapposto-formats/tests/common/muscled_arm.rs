@@ -1,6 +1,11 @@
 //! A forearm on muscles, and scenarios of bodies with muscles in use.
 
-#![allow(unreachable_pub, clippy::unwrap_used, reason = "tests include this file as a module")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::unwrap_used,
+    reason = "tests include this file as a module, each uses a part"
+)]
 
 use contrapposto::simulation::Scenario;
 use contrapposto_formats::read_run;

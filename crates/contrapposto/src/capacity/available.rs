@@ -36,7 +36,7 @@ impl Demand {
     }
 
     /// Share of the mean person's strength that a group can give.
-    fn share(self, group: &MuscleGroup) -> f64 {
+    pub(super) fn share(self, group: &MuscleGroup) -> f64 {
         let held = |law: &FatigueLaw| self.hold.map_or(1.0, |seconds| law.load_held_for(seconds));
         let own = held(&group.fatigue);
         let library = library();

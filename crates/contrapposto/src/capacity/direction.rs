@@ -1,7 +1,7 @@
 //! Finds the greatest force in one direction, the contact forces beside it, and what limits it.
 //!
 //! The share of a limit is the relative change of the force per relative change of that limit (an elasticity), from the multipliers `y` of
-//! the equations `A x = b`: `S |y| / s` for a strength, `-y . (dA/dp) x p / s` for a coefficient of friction, and for the size of all patches about
+//! the equations `A x = b`: `S |y| / s` for a strength, the sum of `c max(-y . A_m, 0) / s` over the muscles that work for a group, `-y . (dA/dp) x p / s` for a coefficient of friction, and for the size of all patches about
 //! their middles, which stands for balance.
 
 use nalgebra::Vector3;
@@ -82,7 +82,7 @@ impl Program {
     fn greatest_force(&self, direction: Vector3<f64>, found: &Optimum) -> GreatestForce {
         let force = found.value * self.weight;
         let mut contact = vec![Vector3::zeros(); self.axes.len()];
-        for (edge, &unknown) in self.edges.iter().zip(found.unknowns.get(self.torques..).unwrap_or_default()) {
+        for (edge, &unknown) in self.edges.iter().zip(found.unknowns.get(self.pulls..).unwrap_or_default()) {
             let axes = edge.parts.iter().zip(&self.axes[edge.corner]);
             contact[edge.corner] +=
                 self.weight * edge.force(unknown) * axes.map(|(part, axis)| *part * axis).sum::<Vector3<f64>>();
@@ -110,8 +110,17 @@ impl Program {
             let share = joint.strength[side.index()] * row.scale * y.abs() / size;
             limits.push(Limit { by: Limiter::Strength { coordinate: joint.coordinate, side }, share });
         }
+        for muscle in &self.muscles {
+            let Some((coordinate, side)) = muscle.works_for else { continue };
+            let gain: f64 = muscle.column.iter().zip(y).map(|(entry, y)| -y * entry).sum();
+            let (by, share) = (Limiter::Strength { coordinate, side }, gain.max(0.0) * muscle.capacity / size);
+            match limits.iter_mut().find(|limit| limit.by == by) {
+                Some(limit) => limit.share += share,
+                None => limits.push(Limit { by, share }),
+            }
+        }
         let (mut friction, mut patch) = (0.0, 0.0);
-        for (edge, &unknown) in self.edges.iter().zip(found.unknowns.get(self.torques..).unwrap_or_default()) {
+        for (edge, &unknown) in self.edges.iter().zip(found.unknowns.get(self.pulls..).unwrap_or_default()) {
             let against = |other: &[f64]| -> f64 {
                 edge.column.iter().zip(other).zip(y).map(|((own, other), y)| y * (own - other)).sum()
             };

@@ -16,10 +16,15 @@
 //! Friction is the pyramid of [`crate::contact`], which lies inside the cone: along the two axes of a plane it is `1 / sqrt(2)` of the cone's, so
 //! a force limited by friction is at most 29 % below that of the cone, and never above. `share_max` of a support is a preference and limits no force.
 //! Coordinates of unknown strength limit nothing.
+//!
+//! Muscles that give joints their strength ([`Situation::muscles`]) share the torques: there `a = sum_m R_m F_m x_m`, with moment arms `R`,
+//! tension `F` at full activation beyond that of passive fibres, and `0 <= x_m <= c_m`, where the capacity `c` is 1 or what fatigue leaves of it.
+//! All such torques are a zonotope. A two-joint muscle that helps at one joint may be in the way at the other.
 
 mod available;
 mod direction;
 mod program;
+mod pulls;
 mod situation;
 mod solid;
 mod tolerances;

@@ -1,23 +1,25 @@
 //! Builds the linear program of the greatest force from a body in a posture.
 //!
-//! Unknowns are, each from its lower bound on: the active torque of every joint that the force or a contact force reaches, one number for
-//! every edge of the pyramid of friction at every corner (a force inside the pyramid is a sum of its edges), and the force in body
-//! weights. Equations of joints are divided by their strength, those of the root by the weight.
+//! Unknowns are, each from its lower bound on: the active torque of every joint that the force or a contact force reaches, the activation of
+//! every muscle, one number for every edge of the pyramid of friction at every corner (a force inside the pyramid is a sum of its edges), and the
+//! force in body weights. Equations of joints are divided by their strength, those of the root by the weight. Torques of joints whose
+//! strength muscles give are sums over the muscles.
 
 use nalgebra::Vector3;
 
 use super::available::Demand;
+use super::pulls::{Pull, pulls};
 use super::situation::{CapacityError, Situation, Station};
 use super::tolerances::{GREATEST_EDGE_FORCE, HELD_WITHOUT_FORCE, NO_LIMIT};
 use crate::contact::{ContactForces, FACES, root_rates};
-use crate::joint_torques::{JointTorques, Quantities};
+use crate::joint_torques::{JointMuscles, JointTorques, Quantities};
 use crate::math::LinearProgram;
 use crate::model::{LARGEST, Model, Side};
 
 /// Forces of a corner: along its normal and along two axes of its plane.
 const PARTS: usize = 3;
 
-/// Joint of an equation.
+/// Joint of an equation that has its strength alone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Joint {
     pub(super) coordinate: usize,
@@ -31,7 +33,7 @@ pub(super) struct Row {
     rate: usize,
     /// Factor of the equation, 1/(N m) or 1/N.
     pub(super) scale: f64,
-    /// `None` for the root.
+    /// `None` for the root, and where muscles give the torque.
     pub(super) joint: Option<Joint>,
     /// Torque per newton of force at the point, along ground axes, m.
     arm: Vector3<f64>,
@@ -58,9 +60,10 @@ pub(super) struct Program {
     pub(super) linear: LinearProgram,
     pub(super) cost: Vec<f64>,
     pub(super) rows: Vec<Row>,
+    pub(super) muscles: Vec<Pull>,
     pub(super) edges: Vec<Edge>,
-    /// Number of torques among the unknowns, which come first.
-    pub(super) torques: usize,
+    /// Number of torques and muscles among the unknowns, which come first.
+    pub(super) pulls: usize,
     /// By corner: normal and two axes of its plane, ground.
     pub(super) axes: Vec<[Vector3<f64>; PARTS]>,
     /// Unit of forces, N.
@@ -76,26 +79,30 @@ impl Program {
         station: Station,
         demand: Demand,
     ) -> Result<Option<Self>, CapacityError> {
-        let Situation { model, posture, loads, supports } = *situation;
+        let Situation { model, posture, loads, supports, muscles } = *situation;
         check(model, station)?;
-        let mut torques = JointTorques::new(model);
+        let mut torques = JointTorques::new(model).with_muscles(muscles.cloned());
         torques.update(model, posture, loads, Quantities::TORQUES)?;
         let mut contact = ContactForces::new(model, supports.to_vec())?;
         let required = torques.active_torque();
         contact.update(model, torques.kinematics_by_axes(), torques.angles(), required);
         let Some(rows) = rows(situation, station, demand, &torques, &contact) else { return Ok(None) };
         let edges = edges(&contact, &rows);
+        let equations: Vec<(usize, f64)> = rows.iter().map(|row| (row.rate, row.scale)).collect();
+        let muscles = torques.muscles().map_or_else(Vec::new, |muscles| pulls(model, muscles, demand, &equations));
         let mut right: Vec<f64> = rows.iter().map(|row| row.scale * (required[row.rate] + row.lower())).collect();
         for edge in edges.iter().filter(|edge| edge.lower != 0.0) {
             right.iter_mut().zip(&edge.column).for_each(|(right, entry)| *right -= edge.lower * entry);
         }
         let joints: Vec<usize> = (0..rows.len()).filter(|&row| rows[row].joint.is_some()).collect();
         let mut upper: Vec<f64> = joints.iter().map(|&row| rows[row].scale * rows[row].width()).collect();
+        upper.extend(muscles.iter().map(|muscle| muscle.capacity));
         upper.extend(edges.iter().map(|edge| GREATEST_EDGE_FORCE - edge.lower));
         upper.push(NO_LIMIT / contact.weight());
         let mut matrix = vec![];
         for k in 0..rows.len() {
             matrix.extend(joints.iter().map(|&joint| if joint == k { 1.0 } else { 0.0 }));
+            matrix.extend(muscles.iter().map(|muscle| muscle.column[k]));
             matrix.extend(edges.iter().map(|edge| edge.column[k]));
             matrix.push(0.0);
         }
@@ -107,8 +114,9 @@ impl Program {
             linear,
             cost,
             rows,
+            pulls: joints.len() + muscles.len(),
+            muscles,
             edges,
-            torques: joints.len(),
             axes: contact.axes().to_vec(),
             weight: contact.weight(),
             place,
@@ -169,16 +177,19 @@ fn rows(
     let root = if supports.is_empty() { vec![] } else { root_rates(model) };
     let root = root.into_iter().map(|rate| Row { rate, scale: contact.weight().recip(), joint: None, arm: arm(rate) });
     let mut rows: Vec<Row> = root.collect();
+    let by_muscles = torques.muscles().map_or(&[][..], JointMuscles::strong);
     for (i, coordinate) in model.coordinates().iter().enumerate() {
         let (Some(rate), false) = (coordinate.rate, model.is_dependent(i)) else { continue };
         let Some(strength) = demand.torques(coordinate, torques.angles()[i]) else { continue };
-        let joint = Joint { coordinate: i, strength };
+        let shared = by_muscles.contains(&rate);
+        let joint = (!shared).then_some(Joint { coordinate: i, strength });
         let scale = strength.iter().fold(0.0f64, |most, torque| most.max(*torque)).recip();
-        let row = Row { rate, scale, joint: Some(joint), arm: arm(rate) };
+        let row = Row { rate, scale, joint, arm: arm(rate) };
         let reached = contact.columns().chunks_exact(n.max(1)).any(|column| column[rate] != 0.0);
         let active = torques.active_torque()[rate];
         let most = strength[Side::of(active).index()];
-        if reached || row.arm != Vector3::zeros() {
+        // Muscles that cross several joints act on each of them.
+        if shared || reached || row.arm != Vector3::zeros() {
             rows.push(row);
         } else if active.abs() > most * (1.0 + HELD_WITHOUT_FORCE) {
             return None;

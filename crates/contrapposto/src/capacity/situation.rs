@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::contact::{Support, SupportError};
-use crate::joint_torques::JointTorquesError;
+use crate::joint_torques::{JointMuscles, JointTorquesError};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::Load;
@@ -19,6 +19,8 @@ pub struct Situation<'a> {
     pub loads: &'a [Load],
     /// Supports of the body.
     pub supports: &'a [Support],
+    /// Muscles that share the torques of the joints whose strength they give; `None`: every group alone has its strength.
+    pub muscles: Option<&'a JointMuscles>,
 }
 
 /// A fixed point of a segment.

@@ -23,6 +23,11 @@ pub struct Breaks {
     pub rest: f64,
 }
 
+impl Breaks {
+    /// A minute after every ten minutes: the breaks that are suggested (assumed).
+    pub const SUGGESTED: Self = Self { work: 600.0, rest: 60.0 };
+}
+
 /// A cycle that is repeated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repetition {

@@ -37,6 +37,7 @@ pub(crate) use hazard::{judged_parts, posture_in_words};
 pub use hip_tract::{HipTract, hip_tract};
 pub use joint_reaction::{Compression, JointReaction, JointReactions, PathForces};
 pub use muscle_laws::{MOST_LEVELLED, TorqueRise};
+pub(crate) use muscle_share::works_for;
 pub use muscle_share::{MuscleShare, MuscleShareError};
 pub use muscle_tables::RESTING_ACTIVATION;
 pub use muscle_work::{MissingTorque, MuscleWork, MuscleWorkError};

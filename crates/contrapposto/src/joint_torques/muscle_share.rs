@@ -125,7 +125,7 @@ impl JointTorques {
 }
 
 /// The group that each muscle works for: in the default posture.
-pub(super) fn works_for(model: &Model, muscles: &JointMuscles) -> Vec<Option<(usize, Side)>> {
+pub(crate) fn works_for(model: &Model, muscles: &JointMuscles) -> Vec<Option<(usize, Side)>> {
     let mut at_default = muscles.clone();
     // A new body is in its default posture, which fits it.
     let _ = at_default.update(model, &model.default_posture(), &Kinematics::new(model));

@@ -212,6 +212,13 @@ impl MuscleFatigue {
         Ok(false)
     }
 
+    /// Lets every muscle rest for so many seconds. Activations are those of before until the next call.
+    pub fn rest(&mut self, seconds: f64) {
+        for (law, state) in self.laws.iter().zip(&mut self.states) {
+            *state = law.advance(*state, 0.0, seconds);
+        }
+    }
+
     /// Returns to the start of the last step.
     pub(super) fn undo(&mut self) {
         self.states.copy_from_slice(&self.before.0);

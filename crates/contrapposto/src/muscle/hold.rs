@@ -5,7 +5,10 @@
 
 use super::fatigue::{MuscleFatigue, SharingError};
 use super::shared_torques::{SharedTorques, TorqueLimit};
-use super::tolerances::{EXHAUSTION_STEP, FIRST_HOLD_STEP, INSTANT, LONGEST_HOLD_STEP, MOST_LOAD_CHANGE};
+use super::tolerances::{
+    EXHAUSTION_STEP, FIRST_HOLD_STEP, INSTANT, LONGEST_HOLD_STEP, MOST_LOAD_CHANGE, STEADY_FATIGUE,
+};
+use crate::fatigue::Breaks;
 
 /// The end of a hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +37,39 @@ pub fn hold(
 ) -> Result<MuscleHold, SharingError> {
     fatigue.begin(asked)?;
     hold_on(fatigue, asked, most, visit)
+}
+
+/// Holds torques from the present state of the muscles with breaks, the first one after `until` seconds, for at most `most` seconds of work. Returns the
+/// time of the failure, s of work and breaks; `None` where the muscles hold, or are no more tired at a break than at the one before.
+///
+/// # Errors
+/// As [`hold`].
+///
+/// # Panics
+/// As [`hold`].
+pub fn hold_with_breaks(
+    fatigue: &mut MuscleFatigue,
+    asked: &SharedTorques<'_>,
+    (mut until, breaks): (f64, Breaks),
+    most: f64,
+) -> Result<Option<f64>, SharingError> {
+    let (mut time, mut work) = (0.0, 0.0);
+    let mut before: Vec<f64> = vec![];
+    while work < most {
+        let held = hold_on(fatigue, asked, until.min(most - work), |_, _| {})?;
+        (time, work) = (time + held.seconds, work + held.seconds);
+        if held.failed {
+            return Ok(Some(time));
+        }
+        let tired: Vec<f64> = fatigue.states().iter().map(|state| state.fatigued).collect();
+        if !before.is_empty() && tired.iter().zip(&before).all(|(now, before)| *now <= before + STEADY_FATIGUE) {
+            return Ok(None);
+        }
+        fatigue.rest(breaks.rest);
+        time += breaks.rest;
+        (until, before) = (breaks.work, tired);
+    }
+    Ok(None)
 }
 
 /// As [`hold`], from the present state of the muscles.

@@ -33,7 +33,7 @@ pub use fiber::{
 };
 pub(crate) use geometry::Line;
 pub use geometry::{PathCorner, PathGeometry, PathPull};
-pub use hold::{MuscleHold, hold, hold_on};
+pub use hold::{MuscleHold, hold, hold_on, hold_with_breaks};
 pub use ligament::{Ligament, LigamentLaw};
 pub use path::{Location, MovingPoint, Path, PathPoint, PathWrap, Paths};
 pub use routing::CornerOrigin;

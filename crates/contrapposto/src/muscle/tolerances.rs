@@ -135,6 +135,8 @@ pub(super) const AT_CAPACITY: f64 = 1e-9;
 pub(super) const FIRST_HOLD_STEP: f64 = 1.0;
 /// Longest step of a hold, s.
 pub(super) const LONGEST_HOLD_STEP: f64 = 60.0;
+/// Share of a muscle by which it is more tired at a break than at the one before, up to which breaks suffice for ever.
+pub(super) const STEADY_FATIGUE: f64 = 1e-6;
 /// Greatest change of an activation within a step of a hold that is longer than [`EXHAUSTION_STEP`].
 pub(super) const MOST_LOAD_CHANGE: f64 = 0.005;
 /// Longest step of a hold in which a muscle may become exhausted, s.

@@ -9,17 +9,18 @@
 //! ```
 //!
 //! as of a group with compartments of its own. Muscles work in pieces of about half a second under the torques at the end of each; `S0` and `S`
-//! stay within a piece. People whose strength is a standard deviation below and above the mean work beside, for the spread of times.
+//! stay within a piece. People whose strength is a standard deviation below and above the mean work beside, for the spread of times; in runs that
+//! are long enough for the breaks that are suggested, people who take them do, too.
 
 use serde::{Deserialize, Serialize};
 
 use super::muscle_outcome::{MEAN_PERSON, MuscleFailure, MuscleOutcome, MuscleSummary};
 use super::{Scenario, ScenarioError};
-use crate::fatigue::{Compartments, FatigueState};
+use crate::fatigue::{Breaks, Compartments, FatigueState};
 use crate::joint_torques::{JointMuscles, LEAST_MUSCLE_STRENGTH, MuscleShare, MuscleShareError};
 use crate::model::data::library;
 use crate::model::{Model, Side};
-use crate::muscle::{CoupledStrength, MuscleFatigue, SharedTorques, TorqueLimit, hold_on};
+use crate::muscle::{CoupledStrength, MuscleFatigue, SharedTorques, TorqueLimit, hold_on, hold_with_breaks};
 
 /// Length of a piece of work, s, where time steps are shorter (assumed: muscles tire by at most 1 % of their force in that time).
 const MUSCLE_PIECE: f64 = 0.5;
@@ -28,16 +29,22 @@ const LONGEST_HOLD: f64 = 86_400.0;
 /// Share of a torque in a limit below which its group does not count as failing.
 const LEAST_SHARE_IN_LIMIT: f64 = 1e-6;
 
-/// People whose muscles work: weaker by a standard deviation of strength, mean, stronger.
-const PEOPLE: [f64; 3] = [-1.0, 0.0, 1.0];
+/// Strengths of people whose muscles work, in standard deviations from the mean: of those who work without breaks (weaker, mean, stronger), then of
+/// those who take them.
+const PEOPLE: [f64; 5] = [-1.0, 0.0, 1.0, -1.0, 0.0];
+/// People who work without breaks.
+const WITHOUT_BREAKS: usize = 3;
+/// Share of a break's period by which time is rounded up, so that a sum of time steps does not miss the end of the period.
+const PERIOD_ROUNDING: f64 = 1e-9;
 
 /// State at the end of a piece of work, from which the next one goes on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct MuscleState {
     /// Compartments of every muscle, by person.
-    people: [Vec<Compartments>; 3],
-    /// First time at which the muscles of each person could not give all torques, s, and the group with the greatest share in the limit.
-    failed: [Option<MuscleFailure>; 3],
+    people: Vec<Vec<Compartments>>,
+    /// First time at which the muscles of each person could not give all torques, s of work and breaks, and the group with the greatest share in
+    /// the limit.
+    failed: Vec<Option<MuscleFailure>>,
     /// Of the mean person: `S0` and `MF` of the positive and the negative group, by rate whose strength is the muscles'.
     groups: Vec<[[f64; 2]; 2]>,
     /// Of the mean person: every muscle so far.
@@ -50,7 +57,7 @@ pub(super) struct MuscleCourse {
     share: MuscleShare,
     /// Coordinate of every rate of the share.
     coordinates: Vec<usize>,
-    people: [Person; 3],
+    people: Vec<Person>,
     /// Time steps of a piece, and its length, s.
     every: u64,
     seconds: f64,
@@ -60,6 +67,7 @@ pub(super) struct MuscleCourse {
 
 #[derive(Clone, Debug)]
 struct Person {
+    takes_breaks: bool,
     /// Strength of every muscle over the mean.
     strength: Vec<f64>,
     /// Tension of every muscle at full activation beyond that of its passive fibres, N.
@@ -71,15 +79,16 @@ impl MuscleCourse {
     /// Of a scenario whose muscles tire one by one; `None` of another one.
     pub(super) fn of(scenario: &Scenario) -> Result<Option<Self>, MuscleShareError> {
         let muscles = scenario.muscles.as_ref().filter(|_| scenario.muscles_tire);
-        muscles.map(|muscles| Self::new(&scenario.model, muscles, scenario.run.step)).transpose()
+        let with_breaks = scenario.run.end() > Breaks::SUGGESTED.work;
+        muscles.map(|muscles| Self::new(&scenario.model, muscles, scenario.run.step, with_breaks)).transpose()
     }
 
-    /// Of muscles in time steps of `step`, s.
-    fn new(model: &Model, muscles: &JointMuscles, step: f64) -> Result<Self, MuscleShareError> {
+    /// Of muscles in time steps of `step`, s; `with_breaks`: whether people who take breaks work, too.
+    fn new(model: &Model, muscles: &JointMuscles, step: f64, with_breaks: bool) -> Result<Self, MuscleShareError> {
         let share = MuscleShare::new(model, muscles, |_| 0.0)?;
         let coordinate = |&rate: &usize| model.rates()[rate].coordinate.ok_or(MuscleShareError::NoMuscles);
         let coordinates = share.rates.iter().map(coordinate).collect::<Result<_, _>>()?;
-        let people = PEOPLE.map(|deviations| {
+        let person = |(number, &deviations): (usize, &f64)| {
             let strength = |of: &Option<(usize, Side)>| {
                 let (coordinate, side) = (*of)?;
                 let groups = model.coordinates()[coordinate].groups.as_ref()?;
@@ -87,11 +96,14 @@ impl MuscleCourse {
                 Some(1.0 + deviations * variation)
             };
             Person {
+                takes_breaks: number >= WITHOUT_BREAKS,
                 strength: share.works_for.iter().map(|of| strength(of).unwrap_or(1.0)).collect(),
                 forces: share.forces.clone(),
                 fatigue: MuscleFatigue::rested(share.laws.clone()),
             }
-        });
+        };
+        let count = if with_breaks { PEOPLE.len() } else { WITHOUT_BREAKS };
+        let people = PEOPLE[..count].iter().enumerate().map(person).collect();
         let every = (MUSCLE_PIECE / step).round().max(1.0);
         Ok(Self { share, coordinates, people, every: every as u64, seconds: every * step, rested: None })
     }
@@ -119,8 +131,12 @@ impl MuscleCourse {
         let of_group = |of: Option<(usize, Side)>| of.map_or(0.0, |(i, side)| levels[i][side.index()]);
         let of_muscle =
             |works_for: &Option<(usize, Side)>| MuscleSummary { works_for: *works_for, ..Default::default() };
-        let mut state =
-            MuscleState { muscles: self.share.works_for.iter().map(of_muscle).collect(), ..MuscleState::default() };
+        let mut state = MuscleState {
+            people: vec![vec![]; self.people.len()],
+            failed: vec![None; self.people.len()],
+            groups: vec![],
+            muscles: self.share.works_for.iter().map(of_muscle).collect(),
+        };
         for (person, Person { forces, fatigue, .. }) in self.people.iter_mut().enumerate() {
             let asked = SharedTorques { forces, ..self.share.asked(muscles) };
             let held = fatigue.begin_tired(&asked, |muscle| of_group(works_for[muscle]))?;
@@ -150,10 +166,16 @@ impl MuscleCourse {
             return Ok(());
         }
         self.ask(muscles, active);
-        for (person, Person { forces, fatigue, .. }) in self.people.iter_mut().enumerate() {
+        let [breaks, breaks_after] = [time - self.seconds, time].map(breaks_until);
+        for (person, Person { takes_breaks, forces, fatigue, .. }) in self.people.iter_mut().enumerate() {
             let asked = SharedTorques { forces, ..self.share.asked(muscles) };
             let held = fatigue.work(&asked, self.seconds)?;
-            state.take(person, time, (!held).then_some((&asked, &self.coordinates)), fatigue);
+            let paused = if *takes_breaks { breaks * Breaks::SUGGESTED.rest } else { 0.0 };
+            state.take(person, time + paused, (!held).then_some((&asked, &self.coordinates)), fatigue);
+            if *takes_breaks && breaks_after > breaks {
+                fatigue.rest((breaks_after - breaks) * Breaks::SUGGESTED.rest);
+                state.people[person].copy_from_slice(fatigue.states());
+            }
         }
         self.judge(muscles, time, state)
     }
@@ -220,12 +242,40 @@ impl MuscleCourse {
             let who = first_of(&held.limit, &asked, &self.coordinates);
             held.failed.then_some(MuscleFailure { time: time + held.seconds, who })
         };
+        let takes_breaks = self.people.len() > WITHOUT_BREAKS;
+        let with_breaks = |person: usize| self.failure_with_breaks(muscles, time, state, WITHOUT_BREAKS + person);
         MuscleOutcome {
             muscles: state.muscles.clone(),
             failures: [0, 1, 2].map(failure),
+            with_breaks: takes_breaks.then(|| [0, 1].map(with_breaks)),
             coordinates: self.coordinates.clone(),
         }
     }
+
+    /// Time at which the muscles of a person who takes breaks fail, s of work and breaks; a person who has not failed at the end of the run, `time` s of work
+    /// after its start, holds the last posture on.
+    fn failure_with_breaks(
+        &self,
+        muscles: &JointMuscles,
+        time: f64,
+        state: &MuscleState,
+        person: usize,
+    ) -> Option<f64> {
+        if let Some(failed) = state.failed[person] {
+            return Some(failed.time);
+        }
+        let Person { forces, fatigue, .. } = &self.people[person];
+        let asked = SharedTorques { forces, ..self.share.asked(muscles) };
+        let (mut fatigue, taken) = (fatigue.clone(), breaks_until(time));
+        let until = (taken + 1.0) * Breaks::SUGGESTED.work - time;
+        let held = hold_with_breaks(&mut fatigue, &asked, (until, Breaks::SUGGESTED), LONGEST_HOLD).ok()?;
+        held.map(|seconds| time + taken * Breaks::SUGGESTED.rest + seconds)
+    }
+}
+
+/// Number of breaks in so much work, s.
+fn breaks_until(work: f64) -> f64 {
+    (work / Breaks::SUGGESTED.work + PERIOD_ROUNDING).floor()
 }
 
 impl MuscleState {
@@ -254,9 +304,12 @@ impl MuscleState {
     /// Whether there is an entry for each of so many muscles and rates, and every number is finite.
     pub(super) fn fits(&self, course: &MuscleCourse) -> bool {
         let (muscles, rates) = (course.share.laws.len(), course.coordinates.len());
+        let people = course.people.len();
         let shares =
             |c: &Compartments| [c.active, c.resting, c.fatigued].iter().all(|share| (0.0..=1.0).contains(share));
-        self.people.iter().all(|states| states.len() == muscles && states.iter().all(shares))
+        self.people.len() == people
+            && self.failed.len() == people
+            && self.people.iter().all(|states| states.len() == muscles && states.iter().all(shares))
             && self.muscles.len() == muscles
             && self.groups.len() == rates
             && self.groups.iter().flatten().flatten().all(|number| number.is_finite())

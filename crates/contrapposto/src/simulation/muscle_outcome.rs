@@ -45,6 +45,10 @@ pub struct MuscleOutcome {
     /// Of people whose strength is a standard deviation below the mean, the mean, and one above: when their muscles fail, during the run or if its
     /// last posture is held on; `None` if not within a day.
     pub failures: [Option<MuscleFailure>; 3],
+    /// With the breaks that are suggested ([`Breaks::SUGGESTED`](crate::fatigue::Breaks::SUGGESTED)): when the muscles of people whose strength is a
+    /// standard deviation below the mean, and of the mean, fail, s of work and breaks; `None` if not within a day. Nothing of a run that is too
+    /// short for a break.
+    pub with_breaks: Option<[Option<f64>; 2]>,
     /// Coordinates whose groups have the fatigue of muscles.
     pub coordinates: Vec<usize>,
 }

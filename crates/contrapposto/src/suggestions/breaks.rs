@@ -4,13 +4,13 @@ use super::trial::Suggestion;
 use crate::assessment::{Assessment, GroupAssessment};
 use crate::fatigue::{Breaks, FatigueLaw, LoadHistory, Repeated, Repetition};
 use crate::model::{Model, MuscleGroup, Side};
-use crate::simulation::{Scenario, Summary};
+use crate::simulation::{MuscleOutcome, Scenario, Summary};
 use crate::verdict::{self, A_DAY, Verdict, VerdictKind};
 
 /// A break comes after so much work, s.
-pub const BREAK_EVERY: f64 = 600.0;
+pub const BREAK_EVERY: f64 = Breaks::SUGGESTED.work;
 /// A break lasts so long, s.
-pub const BREAK: f64 = 60.0;
+pub const BREAK: f64 = Breaks::SUGGESTED.rest;
 /// Piece of work under one load, s.
 const WORK_PIECE: f64 = 1.0;
 /// Fatigue that grows by less from break to break under the last loads of a run has reached its steady state.
@@ -30,10 +30,11 @@ pub struct Worked<'a> {
 }
 
 impl<'a> Worked<'a> {
-    /// All groups of known strength in a run.
+    /// All groups of known strength in a run that tire by laws of their own; not those of muscles that tire one by one.
     pub fn in_run(scenario: &'a Scenario, summary: &'a Summary) -> Vec<Self> {
         let mut all = vec![];
-        for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
+        let of_muscles = |i: &usize| summary.muscles.as_ref().is_some_and(|muscles| muscles.coordinates.contains(i));
+        for (i, coordinate) in scenario.model.coordinates().iter().enumerate().filter(|(i, _)| !of_muscles(i)) {
             let (Some(groups), course) = (&coordinate.groups, &summary.coordinates[i]) else { continue };
             all.extend(Side::BOTH.map(Side::index).map(|side| Self {
                 muscles: &groups[side],
@@ -58,9 +59,9 @@ impl<'a> Worked<'a> {
 
 /// The job of a run or motion with a break of a minute after every ten minutes of work: in a break no group has a load; between breaks each has
 /// that of the job, and after the job that of its end. `verdict` is that of the job, `begin` the time of its start, s. Time counts work and breaks.
-/// `None` where the job is too short for a break.
+/// `muscles` are those that tire one by one in a run. `None` where the job is too short for a break.
 pub fn with_breaks(
-    groups: &[Worked<'_>],
+    (groups, muscles): (&[Worked<'_>], Option<&MuscleOutcome>),
     asked: f64,
     (begin, end): (f64, f64),
     verdict: &Verdict,
@@ -69,7 +70,8 @@ pub fn with_breaks(
         return None;
     }
     let longest = A_DAY.max(asked);
-    let (mut first, mut least) = (longest, longest);
+    let [weaker, mean] = muscles.and_then(|muscles| muscles.with_breaks).unwrap_or_default();
+    let [mut first, mut least] = [mean, weaker].map(|time| time.map_or(longest, |time| time.min(longest)));
     for group in groups {
         let course = Course { group, begin, end: end - begin };
         first = first.min(course.failure(&group.muscles.fatigue, 1.0, first));
@@ -88,7 +90,7 @@ pub fn with_breaks_in_repeats(model: &Model, found: &Assessment, verdict: &Verdi
     if asked.seconds <= BREAK_EVERY {
         return None;
     }
-    let repetition = Repetition { breaks: Some(Breaks { work: BREAK_EVERY, rest: BREAK }), ..asked };
+    let repetition = Repetition { breaks: Some(Breaks::SUGGESTED), ..asked };
     let longest = A_DAY.max(asked.seconds);
     let (mut first, mut least) = (longest, longest);
     for group in &found.groups {

@@ -235,7 +235,7 @@ impl Job {
         let groups = Worked::in_motion(model, found);
         let breaks = || match found.repetition {
             Some(_) => with_breaks_in_repeats(model, found, verdict),
-            None => with_breaks(&groups, end - begin, (begin, end), verdict),
+            None => with_breaks((&groups, None), end - begin, (begin, end), verdict),
         };
         let trial = |change: &Change| {
             let mut loads = held.clone();

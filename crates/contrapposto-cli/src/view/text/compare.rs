@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use contrapposto::contact::Support;
+use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::{Coordinate, CoordinateKind, Model, Side};
 use contrapposto::statics::Load;
 use contrapposto::verdict::{Verdict, VerdictKind};
@@ -29,6 +30,8 @@ pub(crate) struct ComparedPosture {
     pub(crate) how: String,
     pub(crate) verdict: Verdict,
     pub(crate) model: Model,
+    /// Muscles that give joints passive torque or strength.
+    pub(crate) muscles: Option<JointMuscles>,
     pub(crate) supports: Vec<Support>,
     /// Things around the body and in its hands.
     pub(crate) things: Vec<Thing>,
@@ -38,6 +41,13 @@ pub(crate) struct ComparedPosture {
     pub(crate) posture: Vec<f64>,
     /// Torques and loads; `None` where the supports cannot hold the posture.
     pub(crate) frame: Option<Frame>,
+}
+
+impl ComparedPosture {
+    /// Whether muscles share torques of joints.
+    pub(crate) fn shares(&self) -> bool {
+        self.muscles.as_ref().is_some_and(|muscles| !muscles.strong().is_empty())
+    }
 }
 
 /// The whole file.

@@ -137,7 +137,12 @@ impl Fibers {
         FiberState {
             fiber_length: length,
             cos_pennation: forces.cos,
-            tendon_force: if shortest && self.rigid { 0.0 } else { most * forces.tendon },
+            // The curve of a tendon may go below zero where it is slack.
+            tendon_force: match (shortest, self.rigid) {
+                (true, true) => 0.0,
+                (true, false) => most * forces.tendon.max(0.0),
+                (false, _) => most * forces.tendon,
+            },
             active_force: carried * forces.active,
             passive_force: carried * forces.passive,
             passive_stiffness: if shortest { 0.0 } else { most * forces.passive_slope * stretched },

@@ -123,9 +123,9 @@ impl Muscle {
         let pennate = width / spec.max_pennation.sin();
         // Shortest length over optimal length, beside that of the greatest pennation.
         let least = match &curves {
-            CurveSet::Thelen(_) | CurveSet::Mujoco(_) => 0.0,
+            CurveSet::Thelen(_) | CurveSet::DeGrooteFregly(_) | CurveSet::Mujoco(_) => 0.0,
             CurveSet::Millard(curves) => curves.least_length,
-            CurveSet::DeGrooteFregly(_) | CurveSet::Schutte(_) => LEAST_LENGTH,
+            CurveSet::Schutte(_) => LEAST_LENGTH,
         };
         let least_length = pennate.max(least * spec.optimal_fiber_length);
         let fibers = Fibers {
