@@ -106,6 +106,7 @@ fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<(Model, 
     let uses = file.muscles.or_else(|| file.multiplies_data.then_some(MuscleUse::Off));
     let args = model_args(scenario, name, &file)?;
     let (opened, muscles) = open_for_scenario(&args, ((uses, key.as_str()), file.hip_tract))?;
+    let muscles = muscles.map(|muscles| muscles.with_sharing(file.sharing));
     if file.muscles.is_none() && file.multiplies_data && opened.default_muscle_use() != MuscleUse::Off {
         let why =
             "[strength] and [passive] spread multiply the built-in data, so that the model's muscles give nothing";

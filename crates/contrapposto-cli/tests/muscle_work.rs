@@ -74,6 +74,37 @@ fn assess_names_the_muscles_that_share_a_torque_in_proportion_to_their_own() {
     assert!(!without.stdout.contains("\"muscles\""), "{}", without.stdout);
 }
 
+/// Least cubes: activations are in proportion to the roots of the torques of the muscles. Commands and scenarios take the same word.
+#[test]
+fn muscles_share_by_cubes_where_a_command_or_a_scenario_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(folder.path(), "m.osim", &model());
+    let motion = write(folder.path(), "still.csv", "time,q_deg\n0,0\n20,0\n");
+    let force = ["--force", "b -20,0,0 at 0,-0.3,0 world"];
+    let scenario = |sharing: &str| {
+        let text = format!(
+            "format = 1\n[model]\nfile = \"m.osim\"\n{sharing}\n[[load]]\nsegment = \"b\"\nat_m = [0.0, -0.3, 0.0]\n\
+             force_n = [-20.0, 0.0, 0.0]\n[[task]]\nkind = \"posture\"\n"
+        );
+        write(folder.path(), "pose.toml", &text)
+    };
+    let ratio = |arguments: &[&str]| {
+        let answer = run(arguments);
+        let json: Value = serde_json::from_str(&answer.stdout).unwrap_or_else(|why| panic!("{why}: {}", answer.stderr));
+        let [weak, strong] = ["weak", "strong"].map(|name| number(&json["muscles"][name]["peak_activation"]));
+        strong / weak
+    };
+    let assess = [&["assess", &file, &motion, "--fixed-root", "--json"][..], &force].concat();
+    assert!((ratio(&[&assess[..], &["--sharing", "cubes"]].concat()) - 3f64.sqrt()).abs() < 1e-6);
+    assert!((ratio(&[&assess[..], &["--sharing", "squares"]].concat()) - 3.0).abs() < 1e-6);
+    let posed = ratio(&["pose", &scenario("sharing = \"cubes\""), "--json", "--no-report"]);
+    assert!((posed - 3f64.sqrt()).abs() < 1e-6, "{posed}");
+    let refused = run(&["pose", &scenario("sharing = \"cubes\"\nmuscles = \"passive\""), "--no-report"]);
+    assert!(refused.stderr.contains("by which muscles share torques"), "{}", refused.stderr);
+    let refused = run(&["pose", &scenario("sharing = \"fourths\""), "--no-report"]);
+    assert!(refused.stderr.contains("fourths") && refused.stderr.contains("cubes"), "{}", refused.stderr);
+}
+
 #[test]
 fn assess_says_what_the_muscles_together_cannot_give() {
     let folder = tempfile::tempdir().unwrap();

@@ -8,7 +8,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::muscle::{
     FiberLaw, Location, Muscle, MuscleFatigue, MuscleSpec, Musculature, Path, PathGeometry, PathPoint, PathRule, Paths,
-    SharedTorques, Thelen2003, hold,
+    SharedTorques, Sharing, Thelen2003, hold,
 };
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -266,12 +266,19 @@ fn leg(random: &mut Pcg64) -> (Model, Musculature, PathGeometry, Vec<usize>) {
 /// failure multipliers prove that no activations give more.
 #[test]
 fn activations_are_optimal_until_multipliers_prove_that_none_suffice() {
-    let seed = 20_261_124;
-    println!("seed {seed}");
+    for sharing in [Sharing::Squares, Sharing::Cubes] {
+        let seed = 20_261_124;
+        println!("seed {seed}, {sharing:?}");
+        optimal_until_none_suffice(seed, sharing);
+    }
+}
+
+fn optimal_until_none_suffice(seed: u128, sharing: Sharing) {
     let mut random = Pcg64::new(seed, 0);
     let (mut failures, mut judged) = (0, 0);
     for _ in 0..12 {
         let (_, muscles, geometry, rates) = leg(&mut random);
+        let muscles = Musculature { sharing, ..muscles };
         let forces: Vec<f64> = (0..30).map(|_| random.random_range(100.0..1500.0)).collect();
         let laws: Vec<_> =
             (0..30).map(|_| law(random.random_range(0.005..0.02), random.random_range(0.0005..0.002))).collect();

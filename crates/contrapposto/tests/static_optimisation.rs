@@ -6,7 +6,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::muscle::{
     FiberLaw, Location, Muscle, MuscleSpec, Musculature, Path, PathGeometry, PathPoint, PathRule, Paths, Recruitment,
-    StaticOptimisation, Thelen2003, coupled_strength,
+    Sharing, StaticOptimisation, Thelen2003, coupled_strength,
 };
 use hierarchical_least_squares::Status;
 use nalgebra::Vector3;
@@ -75,6 +75,37 @@ fn muscles_share_a_torque_by_their_own_torques() {
     let (status, found, residual) = solve(10.0, [(0.01, 0.2), (0.01, 0.2), (0.01, 1.0)]);
     assert_eq!(status, Status::Infeasible { level: 0 });
     assert!((residual - (0.2 * (own[0] + own[1]) + rest - 10.0)).abs() < 1e-9, "{found:?} {residual}");
+}
+
+#[test]
+fn cubes_share_a_torque_by_the_roots_of_the_muscles_own_torques() {
+    let (_, squares, geometry, elbow) = elbow();
+    let muscles = Musculature { sharing: Sharing::Cubes, ..squares };
+    let own = [0, 1, 2].map(|m| geometry.moment_arms(m)[elbow] * FORCES[m]);
+    let mut optimisation = StaticOptimisation::default();
+    let mut solve = |torque: f64, reserve: f64, bounds: [(f64, f64); 3]| {
+        let asked =
+            Recruitment { rates: &[elbow], torques: &[torque], reserves: &[reserve], forces: &FORCES, bounds: &bounds };
+        assert_eq!(optimisation.solve(&muscles, &geometry, &asked).unwrap(), Status::Solved);
+        assert!(optimisation.optimality() < 1e-8, "{}", optimisation.optimality());
+        assert!(optimisation.residual()[0].abs() < 1e-9, "{:?}", optimisation.residual());
+        (optimisation.activations().to_vec(), optimisation.reserves().to_vec())
+    };
+    // 3 a^2 = y t of both flexors, and sum a t is the torque.
+    for torque in [0.05, 1.0, 10.0] {
+        let (found, _) = solve(torque, 0.0, [(0.0, 1.0); 3]);
+        let scale = torque / (own[0].powf(1.5) + own[1].powf(1.5));
+        for m in 0..2 {
+            assert!((found[m] - scale * own[m].sqrt()).abs() < 1e-8, "{torque}: {found:?} {scale} {own:?}");
+        }
+        assert!(found[2] == 0.0, "{found:?}");
+    }
+    // The second is tired, the first takes over; then a reserve helps as a muscle of its torque would.
+    let (found, _) = solve(10.0, 0.0, [(0.0, 1.0), (0.0, 0.2), (0.0, 1.0)]);
+    assert!((found[1] - 0.2).abs() < 1e-15 && (found[0] - (10.0 - 0.2 * own[1]) / own[0]).abs() < 1e-9, "{found:?}");
+    let (_, reserves) = solve(10.0, 7.0, [(0.0, 1.0); 3]);
+    let scale = 10.0 / (own[0].powf(1.5) + own[1].powf(1.5) + 7f64.powf(1.5));
+    assert!((reserves[0] - scale * 7f64.sqrt()).abs() < 1e-8, "{reserves:?}");
 }
 
 #[test]

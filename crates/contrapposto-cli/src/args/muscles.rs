@@ -1,6 +1,8 @@
 //! Arguments about the use of a model's muscles.
 
 use clap::ValueEnum;
+use contrapposto::joint_torques::JointMuscles;
+use contrapposto::muscle::Sharing;
 use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
 
 use crate::fail::Fail;
@@ -12,6 +14,36 @@ pub(crate) struct MuscleArgs {
     /// of the built-in data; without it `both` for an OpenSim file with muscles, else `off`.
     #[arg(long, value_enum, value_name = "USE")]
     pub(crate) muscles: Option<MuscleChoice>,
+    #[command(flatten)]
+    pub(crate) sharing: SharingArgs,
+}
+
+/// The measure by which muscles share the torques of joints.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SharingArgs {
+    /// Muscles that give strength share active torques at the least sum of squared or of cubed activations; cubes let more muscles work, each less.
+    #[arg(long, value_enum, value_name = "MEASURE", default_value = "squares")]
+    pub(crate) sharing: SharingChoice,
+}
+
+/// A sum that is least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SharingChoice {
+    /// Of squared activations, as in OpenSim by default.
+    Squares,
+    /// Of cubed activations.
+    Cubes,
+}
+
+impl SharingArgs {
+    /// The muscles, sharing torques by the measure.
+    pub(crate) fn of(&self, muscles: Option<JointMuscles>) -> Option<JointMuscles> {
+        let sharing = match self.sharing {
+            SharingChoice::Squares => Sharing::Squares,
+            SharingChoice::Cubes => Sharing::Cubes,
+        };
+        muscles.map(|muscles| muscles.with_sharing(sharing))
+    }
 }
 
 /// The quantities that muscles give.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, ValueEnum};
 
 use super::model::{FatigueArgs, FrameArgs, LoadArgs, ModelArgs};
+use super::muscles::{SharingArgs, SharingChoice};
 use super::support::SupportArgs;
 use super::time::time;
 use crate::fail::Fail;
@@ -93,12 +94,14 @@ pub(crate) struct HoldArgs {
     pub(crate) carried: SupportArgs,
     #[command(flatten)]
     pub(crate) fatigue: FatigueArgs,
+    #[command(flatten)]
+    pub(crate) sharing: SharingArgs,
 }
 
 impl HoldArgs {
     /// Refuses arguments that count with --hold only.
     pub(crate) fn refuse_without_hold(&self) -> Result<(), Fail> {
-        let Self { under, carried, fatigue, .. } = self;
+        let Self { under, carried, fatigue, sharing, .. } = self;
         let given = [
             ("--load", !under.load.is_empty()),
             ("--force", !under.force.is_empty()),
@@ -106,6 +109,7 @@ impl HoldArgs {
             ("--support", !carried.support.is_empty()),
             ("--fixed-root", carried.fixed_root),
             ("--fatigue", !fatigue.is_default()),
+            ("--sharing", sharing.sharing != SharingChoice::Squares),
         ];
         match given.into_iter().find(|(_, given)| *given) {
             Some((name, _)) => Err(Fail::Refused(format!(

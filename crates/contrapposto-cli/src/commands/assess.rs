@@ -35,7 +35,8 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
     }
     let name = args.motion.display().to_string();
-    let opened = open_with_muscles(&args.model, args.muscles.asked())?;
+    let (opened, muscles, doubts) = open_with_muscles(&args.model, args.muscles.asked())?;
+    let opened = (opened, args.muscles.sharing.of(muscles), doubts);
     let accepted = "MOTION is a .mot, .sto or .csv file";
     let read =
         |model: &Model, notes: &mut _| read_whole_motion(&args.motion, accepted, &args.under.frames, model, notes);

@@ -42,6 +42,7 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     }
     let target = args.out.as_deref().map(Target::new).transpose()?;
     let (mut opened, muscles, _) = open_with_muscles(&args.model, args.muscles.asked())?;
+    let muscles = args.muscles.sharing.of(muscles);
     let mut notes = std::mem::take(&mut opened.notes);
     let model = &opened.model;
     let mut recorded = recorded(args, model, &mut notes)?;

@@ -1,13 +1,16 @@
 //! Reads which body a scenario has: a model file, or the built-in adult with its passive curves and fatigue laws.
 
 use contrapposto::model::{Adult, AdultError, Model, Part, adult};
+use contrapposto::muscle::Sharing;
 
 use super::error_keys::adult_path;
 use super::fatigue_choice::fatigue_choice;
 use super::head::check_head;
 use super::names::coordinate;
 use super::spread::with_spread;
-use super::text::{AdultText, ModelText, MusclesText, PartText, PersonText, RootText, ScenarioText, SexText};
+use super::text::{
+    AdultText, ModelText, MusclesText, PartText, PersonText, RootText, ScenarioText, SexText, SharingText,
+};
 use crate::input_error::InputError;
 use crate::model_ir::RootAttachment;
 use crate::passive_law::passive_curve;
@@ -31,6 +34,8 @@ pub struct ModelFile {
     pub muscles: Option<MuscleUse>,
     /// Capsule and iliotibial tract of the hips beside these muscles, for [`SourcedModel::add_hip_tracts`].
     pub hip_tract: HipTissue,
+    /// The measure by which these muscles share torques.
+    pub sharing: Sharing,
     /// Whether the scenario multiplies strength or passive torque of the data, so that by default muscles give nothing.
     pub multiplies_data: bool,
     /// The person whom it stands for.
@@ -57,6 +62,7 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
             ("file_strength", text.file_strength.is_some()),
             ("muscles", text.muscles.is_some()),
             ("hip_tract", text.hip_tract.is_some()),
+            ("sharing", text.sharing.is_some()),
             ("person", text.person.is_some()),
         ];
         for (key, given) in given {
@@ -90,8 +96,22 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
         let help = Some("leave it out, or write muscles = \"both\" or \"passive\"".to_owned());
         return Err(at.key_error(&["model", "hip_tract"], message, help));
     }
+    let sharing = sharing(at, text, muscles)?;
     let (file, overlay) = (file.clone(), text.overlay.clone());
-    Ok(Some(ModelFile { file, overlay, root, strength, fatigue, muscles, hip_tract, multiplies_data, person }))
+    Ok(Some(ModelFile { file, overlay, root, strength, fatigue, muscles, hip_tract, sharing, multiplies_data, person }))
+}
+
+/// The measure by which muscles share torques.
+fn sharing(at: &Located, text: &ModelText, muscles: Option<MuscleUse>) -> Result<Sharing, InputError> {
+    if text.sharing.is_some() && muscles.is_some_and(|uses| !uses.gives_strength()) {
+        let message = "`sharing` is the measure by which muscles share torques, and they give no strength here";
+        let help = Some("leave it out, or write muscles = \"both\" or \"strength\"".to_owned());
+        return Err(at.key_error(&["model", "sharing"], message, help));
+    }
+    Ok(match text.sharing {
+        Some(SharingText::Cubes) => Sharing::Cubes,
+        Some(SharingText::Squares) | None => Sharing::Squares,
+    })
 }
 
 /// The use of muscles that a scenario asks for, and whether it multiplies the strength or the passive torque of the data.

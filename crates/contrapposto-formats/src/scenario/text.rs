@@ -149,6 +149,8 @@ pub(crate) struct ModelText {
     pub(crate) muscles: Option<MusclesText>,
     /// Capsule and iliotibial tract of the hips beside these muscles; `off` when left out.
     pub(crate) hip_tract: Option<HipTissue>,
+    /// The measure by which these muscles share torques; `squares` when left out.
+    pub(crate) sharing: Option<SharingText>,
     /// The person whom a model file stands for: size of the built-in strength and passive torque.
     pub(crate) person: Option<PersonText>,
 }
@@ -177,6 +179,16 @@ pub(crate) enum MusclesText {
     Passive,
     /// Strength and passive torque.
     Both,
+}
+
+/// The sum of activations that is least where muscles share torques.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum SharingText {
+    /// Of squares, as in OpenSim by default.
+    Squares,
+    /// Of cubes: more muscles work, each less.
+    Cubes,
 }
 
 /// Attachment of a root.

@@ -5,6 +5,7 @@
 
 use contrapposto::joint_torques::{JointMuscles, TorqueRise};
 use contrapposto::model::Model;
+use contrapposto::muscle::Sharing;
 use contrapposto::passive::PassiveLaw;
 use contrapposto::posture::Posture;
 use contrapposto::statics::PathTensionError;
@@ -59,6 +60,12 @@ impl SourcedModel {
 }
 
 impl ScenarioMuscles {
+    /// The same, whose muscles share torques by a measure.
+    #[must_use]
+    pub fn with_sharing(self, sharing: Sharing) -> Self {
+        Self { muscles: self.muscles.with_sharing(sharing), ..self }
+    }
+
     /// The muscles, with the body in the posture `start`. Joints keep a law that the scenario gives them; where `relief` is sought they have
     /// the library's if the torque of their muscles rises too much. The notes say which.
     pub fn settle(self, model: &mut Model, start: &Posture, relief: bool) -> (JointMuscles, Vec<String>) {

@@ -64,6 +64,7 @@ impl TableMaker {
             muscles: all.muscles.iter().filter(|muscle| crosses(muscle.spec().path)).cloned().collect(),
             ligaments: all.ligaments.iter().filter(|ligament| crosses(ligament.path)).cloned().collect(),
             bushings: all.bushings.clone(),
+            sharing: all.sharing,
         }
         .with_used_paths();
         let n = model.rates().len();

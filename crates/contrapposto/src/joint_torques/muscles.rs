@@ -18,7 +18,8 @@ use super::muscle_tables::RESTING_ACTIVATION;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Side};
 use crate::muscle::{
-    FiberState, Musculature, PathGeometry, PathRule, bushing_torque, passive_fiber_torque, passive_torque, strength,
+    FiberState, Musculature, PathGeometry, PathRule, Sharing, bushing_torque, passive_fiber_torque, passive_torque,
+    strength,
 };
 use crate::passive::PassiveLaw;
 use crate::posture::{Posture, PostureError};
@@ -103,6 +104,13 @@ impl JointMuscles {
     pub fn with_laws(self, model: &Model, coordinates: &[(usize, (f64, f64))]) -> Result<Self, PathTensionError> {
         let laws = MuscleLaws::new(model, &self.muscles, coordinates)?;
         Ok(Self { laws: Some(Box::new(laws)), ..self })
+    }
+
+    /// The same, whose muscles share torques by a measure.
+    #[must_use]
+    pub fn with_sharing(mut self, sharing: Sharing) -> Self {
+        self.muscles.sharing = sharing;
+        self
     }
 
     /// The rises of the passive torque in the posture of the last [`JointMuscles::pose`], by coordinate with a law.

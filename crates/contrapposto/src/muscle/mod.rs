@@ -40,7 +40,7 @@ pub use routing::CornerOrigin;
 pub(crate) use routing::Node;
 pub use rule::{PathRule, WrapMethod};
 pub use shared_torques::{SharedTorques, TorqueLimit};
-pub use static_optimisation::{Recruitment, StaticOptimisation};
+pub use static_optimisation::{Recruitment, Sharing, StaticOptimisation};
 pub use tendon::{Around, RoundShape, SidePoint, Tendon, TendonGeom, TendonPart};
 pub use torque::{Tension, passive_fiber_torque, passive_tensions, passive_torque, strength};
 pub(crate) use wrap::Spread;
@@ -57,6 +57,8 @@ pub struct Musculature {
     pub ligaments: Vec<Ligament>,
     /// Springs and bands between frames.
     pub bushings: Vec<Bushing>,
+    /// The measure by which the muscles share torques.
+    pub sharing: Sharing,
 }
 
 impl Musculature {

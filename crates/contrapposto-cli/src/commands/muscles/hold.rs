@@ -22,7 +22,8 @@ pub(super) fn hold(args: &MusclesArgs, seconds: f64) -> Result<(), Fail> {
     let mut notes = std::mem::take(&mut opened.notes);
     notes.extend(fatigue_notes(&opened.model));
     let frame = held_posture(&args.postures, &args.hold.under.frames, &opened.model, &mut notes)?;
-    let mut body = JointTorques::with_passive_ranges(&opened.model, &opened.passive_ranges()).with_muscles(muscles);
+    let mut body = JointTorques::with_passive_ranges(&opened.model, &opened.passive_ranges())
+        .with_muscles(args.hold.sharing.of(muscles));
     torques(args, &mut opened, &mut body, &frame, &mut notes)?;
     notes.iter().for_each(|note| print_note("note", note));
     let found = by_muscles(&opened.model, &body, seconds)?;
