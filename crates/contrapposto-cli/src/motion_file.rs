@@ -325,7 +325,7 @@ fn out_of_range(coordinate: &Coordinate, values: &[f64], outside: f64) -> String
     let share_inside = |scale: f64| 1.0 - share_outside(values.iter().map(|value| scale * value), coordinate.range);
     let smaller = if unit == "m" { 1e-3 } else { 1f64.to_radians() };
     let opposite = if fits >= NEARLY_ALL {
-        format!("; opposite sign? With it {:.0} % of the time lie inside", 100.0 * fits)
+        format!("; opposite sign? With it {:.0} % of the time lies inside", 100.0 * fits)
     } else if least.abs().max(greatest.abs()) > LIKELY_UNIT && share_inside(smaller) >= NEARLY_ALL {
         let meant = if unit == "m" { "millimetres" } else { "degrees, taken for radians" };
         format!("; are its values in {meant}?")

@@ -21,7 +21,7 @@ const CUBE_STEPS: usize = 60;
 /// A step toward the least sum of cubes that changes no activation by more is the last.
 const SAME_ACTIVATION: f64 = 1e-10;
 /// Most halvings of such a step.
-const HALVINGS: i32 = 30;
+const MOST_CUBE_HALVINGS: i32 = 30;
 /// A step that changes no activation by more is not halved.
 const SMALL_STEP: f64 = 1e-5;
 /// Least curvature of a cube, at the first step: an unknown at zero has none. A quarter of it at each further step, down to the second number.
@@ -137,7 +137,7 @@ impl StaticOptimisation {
             let change = self.step.iter().fold(0.0f64, |most, step| most.max(step.abs()));
             // Near the end the sum falls by less than its rounding.
             let before = if change <= SMALL_STEP { f64::INFINITY } else { cubes(0.0) };
-            let share = (0..HALVINGS).map(|k| 0.5f64.powi(k)).find(|share| cubes(*share) < before);
+            let share = (0..MOST_CUBE_HALVINGS).map(|k| 0.5f64.powi(k)).find(|share| cubes(*share) < before);
             let Some(share) = share else { break };
             self.found.iter_mut().zip(&self.step).for_each(|(x, step)| *x += share * step);
             if change <= SAME_ACTIVATION {
