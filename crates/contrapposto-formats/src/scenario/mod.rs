@@ -22,6 +22,7 @@ mod pose;
 mod posture;
 mod relax;
 mod setup;
+mod sharing;
 mod simulate;
 mod spread;
 mod stage;

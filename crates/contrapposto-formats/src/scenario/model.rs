@@ -8,9 +8,7 @@ use super::fatigue_choice::fatigue_choice;
 use super::head::check_head;
 use super::names::coordinate;
 use super::spread::with_spread;
-use super::text::{
-    AdultText, ModelText, MusclesText, PartText, PersonText, RootText, ScenarioText, SexText, SharingText,
-};
+use super::text::{AdultText, ModelText, MusclesText, PartText, PersonText, RootText, ScenarioText, SexText};
 use crate::input_error::InputError;
 use crate::model_ir::RootAttachment;
 use crate::passive_law::passive_curve;
@@ -108,10 +106,7 @@ fn sharing(at: &Located, text: &ModelText, muscles: Option<MuscleUse>) -> Result
         let help = Some("leave it out, or write muscles = \"both\" or \"strength\"".to_owned());
         return Err(at.key_error(&["model", "sharing"], message, help));
     }
-    Ok(match text.sharing {
-        Some(SharingText::Cubes) => Sharing::Cubes,
-        Some(SharingText::Squares) | None => Sharing::Squares,
-    })
+    Ok(text.sharing.map_or(Sharing::Squares, Sharing::from))
 }
 
 /// The use of muscles that a scenario asks for, and whether it multiplies the strength or the passive torque of the data.

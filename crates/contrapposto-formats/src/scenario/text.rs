@@ -8,6 +8,7 @@ use serde::Deserialize;
 
 use super::fatigue_text::FatigueText;
 use super::obstacle_text::ObstacleText;
+use super::sharing::SharingText;
 use super::spread::{PassiveTable, StrengthText};
 use super::task_text::{SolverText, SupportText, TaskText};
 use super::world::text::{BagText, BoxText, FloorText, HandleText, SeatText, StepText, TableText, ToolText, WallText};
@@ -179,16 +180,6 @@ pub(crate) enum MusclesText {
     Passive,
     /// Strength and passive torque.
     Both,
-}
-
-/// The sum of activations that is least where muscles share torques.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum SharingText {
-    /// Of squares, as in OpenSim by default.
-    Squares,
-    /// Of cubes: more muscles work, each less.
-    Cubes,
 }
 
 /// Attachment of a root.
