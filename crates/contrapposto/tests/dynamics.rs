@@ -212,7 +212,8 @@ fn external_torque_with_the_loads_of_inertia_is_that_at_rest_plus_inertia() {
     let mut torques = JointTorques::new(&model);
     torques.update(&model, &moving.posture, &held, Quantities::TORQUES).unwrap();
     let rest = torques.external_torque().torques().to_vec();
-    let loads = [held.as_slice(), inertia.loads()].concat();
+    let mut loads = held.to_vec();
+    inertia.add_loads(&model, torques.kinematics(), &mut loads);
     torques.update(&model, &moving.posture, &loads, Quantities::TORQUES).unwrap();
     for (rate, ((rest, inertia), both)) in
         rest.iter().zip(inertia.torques()).zip(torques.external_torque().torques()).enumerate()
@@ -220,6 +221,37 @@ fn external_torque_with_the_loads_of_inertia_is_that_at_rest_plus_inertia() {
         assert!((rest + inertia - both).abs() < 1e-10 * (1.0 + both.abs()), "rate {rate}");
     }
     assert!(trees::largest(inertia.torques().iter().copied()) > 10.0);
+}
+
+/// The loads of a moving body, which the forces in its joints come from, carry its momentum: their sum is `-m a` of the centre of mass, whichever
+/// way the torques of inertia are added.
+#[test]
+fn loads_of_a_moving_body_change_its_momentum() {
+    let mut rng = trees::random("loads of a moving body");
+    let bodies = (1..8).map(|size| trees::tree(&mut rng, size, false)).chain([adult(&Adult::default()).unwrap()]);
+    for (i, model) in bodies.collect::<Vec<_>>().iter().enumerate().filter(|(_, model)| !model.rates().is_empty()) {
+        let moving = moving(&mut rng, model);
+        let held = [Load::weight(model, model.segments().len() - 1, 2.0)];
+        let points: Vec<_> = masses(model).into_iter().chain([(held[0].segment, held[0].point, 2.0)]).collect();
+        let h = 1e-3;
+        let momentum = |t: f64| -> V {
+            positions(model, &moving.at(model, t), &points).iter().zip(&points).map(|(place, of)| of.2 * place).sum()
+        };
+        let expected = -(momentum(h) - 2.0 * momentum(0.0) + momentum(-h)) / (h * h);
+        let inertia = inertia(model, &moving, &held);
+        let mut torques = JointTorques::new(model);
+        for gradient in [false, true] {
+            torques.place(model, &moving.posture).unwrap();
+            let quantities = Quantities { gradient, ..Quantities::TORQUES };
+            torques.apply_moving(model, &held, &inertia, quantities).unwrap();
+            let forces = torques.loads().iter().filter_map(|load| match load.kind {
+                LoadKind::Force(force, _) => Some(force),
+                _ => None,
+            });
+            let found: V = forces.sum();
+            assert!((found - expected).norm() < 1e-4 * (1.0 + expected.norm()), "body {i}: {found} {expected}");
+        }
+    }
 }
 
 /// A body on a free joint.
