@@ -80,7 +80,7 @@ fn a_motion_with_the_opposite_sign_is_warned_of_first_and_in_the_json() {
         report["warnings"]
     );
     let sentence = report["verdict"]["sentence"].as_str().unwrap();
-    let doubt = " This is in doubt: check the sign of right knee (knee_angle_r), which is outside of its range in 100\u{a0}% of the frames.";
+    let doubt = " This is in doubt: check the sign of right knee (knee_angle_r), which is outside of its range in 100\u{a0}% of the time.";
     assert!(sentence.ends_with(doubt), "{sentence}");
     // Within the error of recorded angles nothing is in doubt.
     let straight = write(folder.path(), "straight.csv", "time,knee_angle_r_deg\n0,-9\n1,-9\n");

@@ -9,7 +9,7 @@ use crate::xml::shorten;
 pub struct NamedFile {
     /// Element that names it: `model_file` or `marker_file`.
     pub element: &'static str,
-    /// Its name there.
+    /// Name in the setup file.
     pub name: String,
 }
 
