@@ -86,6 +86,7 @@ def compared(program, path, folder):
 
 def main():
     opensim.Logger.setLevelString("error")
+    opensim.Logger.removeFileSink()
     program, *models = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
         same = [compared(program, path, folder) for path in models]

@@ -34,6 +34,7 @@ class OpenSim:
 
     def __init__(self, path):
         opensim.Logger.setLevelString("error")
+        opensim.Logger.removeFileSink()
         self.model = opensim.Model(path)
         self.state = self.model.initSystem()
         self.muscles = [self.model.getMuscles().get(i) for i in range(self.model.getMuscles().getSize())]

@@ -113,6 +113,7 @@ def write(path, out):
 
 def main():
     opensim.Logger.setLevelString("error")
+    opensim.Logger.removeFileSink()
     for path in sys.argv[2:]:
         write(path, sys.argv[1])
 

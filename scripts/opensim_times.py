@@ -2,6 +2,7 @@
 """Times of marker tracking and inverse dynamics an instant, by OpenSim 4.6 and by contrapposto in one run on one core: mean, p99, slowest.
 
     python3 -m venv venv && venv/bin/pip install opensim==4.6 numpy
+    cargo build --release
     cargo build --release -p contrapposto-formats --example opensim_times
     venv/bin/python scripts/opensim_times.py FOLDER [EXAMPLE]
 
@@ -16,6 +17,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 import time
 import xml.etree.ElementTree
 
@@ -86,8 +88,10 @@ def main():
     example = sys.argv[2] if len(sys.argv) > 2 else str(tracking.REPOSITORY / "target/release/examples/opensim_times")
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})  # both on the same core
     fast = True
+    temporary = tempfile.TemporaryDirectory()
     for name, parts in tracking.PIPELINES.items():
-        model, setup, markers = (pipelines / part for part in parts)
+        _, setup, markers = (pipelines / part for part in parts)
+        model = tracking.model_of(pipelines, name, str(tracking.REPOSITORY / "target/release/contrapposto"), pathlib.Path(temporary.name))
         theirs, ours = [], []
         for _ in range(ROUNDS):
             theirs.append(solvers_times(model, setup, markers))

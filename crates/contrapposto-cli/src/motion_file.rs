@@ -228,7 +228,7 @@ pub(crate) fn cut(name: &str, frames: Vec<(f64, Posture)>, args: &FrameArgs) -> 
     let kept: Vec<(f64, Posture)> = frames.into_iter().filter(|(time, _)| (from..=to).contains(time)).collect();
     match ends {
         Some((first, last)) if kept.is_empty() => Err(Fail::Refused(format!(
-            "{name}: no frame lies between --from {from} s and --to {to} s; it goes from {first} s to {last} s"
+            "{name}: no instant lies between --from {from} s and --to {to} s; it goes from {first} s to {last} s"
         ))),
         _ => Ok(kept),
     }

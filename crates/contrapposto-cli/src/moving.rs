@@ -108,7 +108,7 @@ pub(crate) fn keep_overlap(recorded: &mut Recorded, ground: Option<&GroundReacti
         print_note(
             "warning",
             &format!(
-                "forces go from {start} s to {end} s, the motion from {first} s to {last} s: {left_out} of {before} frames are left out, \
+                "forces go from {start} s to {end} s, the motion from {first} s to {last} s: {left_out} of {before} instants are left out, \
                  {kept} from {from} s to {to} s are computed"
             ),
         );
@@ -187,7 +187,7 @@ fn filter_doubts(smoothing: Smoothing, (first, last): (f64, f64), frames: &[(f64
     }
     vec![format!(
         "within {reach:.2} s of the ends of the file, one over the cut-off, speeds and accelerations are those of the filter's padding: {reached} \
-         of {} frames; a longer recording that --from and --to cut, or --cutoff-hz none",
+         of {} instants; a longer recording that --from and --to cut, or --cutoff-hz none",
         frames.len()
     )]
 }
@@ -195,7 +195,7 @@ fn filter_doubts(smoothing: Smoothing, (first, last): (f64, f64), frames: &[(f64
 /// The words for the filter.
 fn filtered(smoothing: Smoothing) -> String {
     match smoothing {
-        Smoothing::None => "speeds and accelerations of quintic splines through the frames, no filter".to_owned(),
+        Smoothing::None => "speeds and accelerations of quintic splines through the instants, no filter".to_owned(),
         Smoothing::OpenSim(cutoff) => format!("the motion is filtered as OpenSim does, low-pass at {cutoff} Hz"),
         Smoothing::Filtfilt(cutoff) => format!("the motion is filtered as filtfilt does, low-pass at {cutoff} Hz"),
     }

@@ -60,10 +60,10 @@ pub(crate) fn rows_bar(rows: u64) -> Progress {
 /// Frames of a motion on standard error.
 pub(crate) fn frames_bar(frames: usize) -> Progress {
     let bar = ProgressBar::new(frames as u64);
-    if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:40} {pos} of {len} frames, {eta} left") {
+    if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:40} {pos} of {len} instants, {eta} left") {
         bar.set_style(style);
     }
-    shown(bar, |bar| format!("{} of {} frames", bar.position(), bar.length().unwrap_or_default()))
+    shown(bar, |bar| format!("{} of {} instants", bar.position(), bar.length().unwrap_or_default()))
 }
 
 /// Something that turns on standard error, with words for what is done.

@@ -115,7 +115,7 @@ fn the_same_markers_give_the_same_motion_and_the_same_scaled_model() {
     let results = |markers: &str| {
         let track = run(&["track", &bench.model, markers, "--out", &out]);
         assert_eq!(track.code, 0, "{}", track.stderr);
-        assert!(track.stdout.starts_with("Tracked 4 frames from 0.5 s to 0.55 s by 24 markers"), "{}", track.stdout);
+        assert!(track.stdout.starts_with("Tracked 4 instants from 0.5 s to 0.55 s by 24 markers"), "{}", track.stdout);
         let measure = ["--measure", "thigh=femur_r0,tibia_r0:femur_r:XYZ", "--place-markers"];
         let scale = run(&[&["scale", &bench.model, markers, "--out", &scaled], measure.as_slice()].concat());
         assert_eq!(scale.code, 0, "{}", scale.stderr);
@@ -305,7 +305,7 @@ fn markers_of_a_laboratory_with_z_up_are_turned_upright() {
     assert!(said.contains("turned upright"), "{said}");
     let (by_file, _) = motion(c3d.to_str().unwrap(), &[], "c3d");
     let (_, said) = motion(&lying, &[], "lying");
-    assert!(said.contains("the body lies in 4 of 4 frames") && said.contains("--up z turns them"), "{said}");
+    assert!(said.contains("the body lies in 4 of 4 instants") && said.contains("--up z turns them"), "{said}");
     for other in [by_name, by_file] {
         let numbers =
             |text: &str| -> Vec<f64> { text.split_whitespace().filter_map(|cell| cell.parse().ok()).collect() };

@@ -435,7 +435,7 @@ fn frames_outside_of_the_ground_reactions_are_left_out_with_the_common_time() {
     };
     let whole = call(&[]);
     assert_eq!((whole.code, times(&whole.stdout)), (0, vec![1.0, 1.5, 2.0]), "{}", whole.stderr);
-    let said = "forces go from 1 s to 2 s, the motion from 0 s to 3 s: 2 of 5 frames are left out, 3 from 1 s to 2 s";
+    let said = "forces go from 1 s to 2 s, the motion from 0 s to 3 s: 2 of 5 instants are left out, 3 from 1 s to 2 s";
     assert!(whole.stderr.contains(said), "{}", whole.stderr);
     let cut = call(&["--from", "1", "--to", "1.5"]);
     assert!(times(&cut.stdout) == [1.0, 1.5] && !cut.stderr.contains("left out"), "{}", cut.stderr);
@@ -495,7 +495,7 @@ fn dynamics_without_a_motion_or_with_a_cutoff_beyond_the_frames_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     assert!(refused(&["torques", "adult", "default", "--dynamics"]).contains("needs a motion"));
     let few = write(folder.path(), "few.csv", "time,elbow_flex_r_deg\n0,5\n1,6\n");
-    assert!(refused(&["torques", "adult", &few, "--dynamics"]).contains("2 frames; accelerations need at least 6"));
+    assert!(refused(&["torques", "adult", &few, "--dynamics"]).contains("2 instants; accelerations need at least 6"));
     let rows: String = (0..20).map(|i| format!("{},{}\n", 0.1 * f64::from(i), i)).collect();
     let slow = write(folder.path(), "slow.csv", &format!("time,elbow_flex_r_deg\n{rows}"));
     let said = refused(&["assess", "adult", &slow, "--dynamics"]);
@@ -527,7 +527,7 @@ fn doubts_about_the_filter_of_a_motion_are_told_by_name() {
     let (quiet, _) = said(&long, &[]);
     assert!(!quiet.contains("padding") && !quiet.contains("below two over"), "{quiet}");
     let (ends, _) = said(&short, &[]);
-    assert!(ends.contains("within 0.17 s of the ends of the file") && ends.contains("34 of 81 frames"), "{ends}");
+    assert!(ends.contains("within 0.17 s of the ends of the file") && ends.contains("34 of 81 instants"), "{ends}");
     assert!(!said(&short, &["--cutoff-hz", "none"]).0.contains("padding"));
     let (low, _) = said(&short, &["--cutoff-hz", "2"]);
     assert!(low.contains("the cut-off of 2 Hz is below two over the length of the motion, 0.800 s"), "{low}");
@@ -562,7 +562,7 @@ fn doubts_about_the_filter_of_a_motion_are_told_by_name() {
     let hop = write(folder.path(), "hop.csv", &format!("time,pelvis_ty_m\n{rows}"));
     let hop = run(&["torques", "adult", &hop]).stderr;
     assert!(hop.contains("inertia is left out, although the centre of mass accelerates"), "{hop}");
-    assert!(hop.contains("5 frames; accelerations need at least 6"), "{hop}");
+    assert!(hop.contains("5 instants; accelerations need at least 6"), "{hop}");
 }
 
 #[test]
@@ -719,5 +719,5 @@ fn a_hinge_a_quarter_turn_beyond_its_range_gives_a_warning_with_its_frame() {
 fn frames_that_all_have_one_time_are_refused() {
     let run = assessed_on_feet("time,elbow_flex_r\n0,20\n0,20\n");
     assert_eq!(run.code, 2);
-    assert!(run.stderr.contains("its 2 frames all have the time 0 s; times must rise"), "{}", run.stderr);
+    assert!(run.stderr.contains("its 2 instants all have the time 0 s; times must rise"), "{}", run.stderr);
 }

@@ -221,7 +221,7 @@ fn what_is_wrong_is_told_by_name() {
     assert!(factor.contains("0.01 to 100 is accepted; do the units of the markers fit?"), "{factor}");
     let time = with(&["--measure", "thigh=femur_r.o,femur_r.y:femur_r", "--from", "5"]);
     assert!(
-        time.contains("no frame lies in the time that is asked for (from 5 s); it goes from 0 s to 0.2 s"),
+        time.contains("no instant lies in the time that is asked for (from 5 s); it goes from 0 s to 0.2 s"),
         "{time}"
     );
     let mass = with(&["--mass", "0"]);

@@ -282,7 +282,7 @@ fn the_ground_holds_a_free_body() {
     assert!((external(1, "shin") - 5.886).abs() < 1e-9);
     let late = write(folder.path(), "late.csv", "time,shin_deg\n0,0\n3,0\n");
     let message = run(&["torques", &model, &late, "--grf", &forces, "--grf-on", "shank"]).stderr;
-    assert!(message.contains("1 of 2 frames are left out") && message.contains("from 0 s to 2 s"), "{message}");
+    assert!(message.contains("1 of 2 instants are left out") && message.contains("from 0 s to 2 s"), "{message}");
     let message = refused(&["torques", &model, &still, "--grf", &forces]);
     assert!(message.contains("--grf-on"), "{message}");
     let message = refused(&["torques", &model, &still, "--grf", &forces, "--grf-on", "shanc"]);
@@ -389,7 +389,7 @@ fn tables_read_back() {
     assert_eq!(lines[0], head);
     let sto = folder.path().join("t.sto");
     let answer = run(&["torques", &model, &two, "--radians", "--gradient", "--out", sto.to_str().unwrap()]);
-    assert!(answer.code == 0 && answer.stdout.contains("2 frames in"), "{}{}", answer.stdout, answer.stderr);
+    assert!(answer.code == 0 && answer.stdout.contains("2 instants in"), "{}{}", answer.stdout, answer.stderr);
     // The postures in it are the postures that went in.
     let again = json(&["torques", &model, sto.to_str().unwrap(), "--json"]);
     let angle = again[0]["coordinates"]["shin"]["angle"].as_f64().unwrap();

@@ -135,7 +135,7 @@ fn a_walk_comes_back_from_its_markers_and_assess_reads_it() {
     let answer = bench.track(&text, &[]);
     assert_eq!(answer.code, 0, "{}", answer.stderr);
     assert!(
-        answer.stdout.starts_with("Tracked 12 frames from 0 s to 0.183 s by 36 markers: their error is 0.00 mm"),
+        answer.stdout.starts_with("Tracked 12 instants from 0 s to 0.183 s by 36 markers: their error is 0.00 mm"),
         "{}",
         answer.stdout
     );
@@ -185,7 +185,7 @@ fn units_sides_pairs_names_and_gaps_that_are_wrong_are_told_by_name() {
     let pair = |name: &str| if name.ends_with("femur0") { other(name) } else { name.to_owned() };
     let pair = bench.track(&trc(&bench.read, &bench.walk, pair), &[]);
     assert!(
-        pair.stderr.contains("`R.femur0` and `L.femur0` seem to be swapped in 12 frames, from 0 s on"),
+        pair.stderr.contains("`R.femur0` and `L.femur0` seem to be swapped in 12 instants, from 0 s on"),
         "{}",
         pair.stderr
     );
@@ -195,7 +195,7 @@ fn units_sides_pairs_names_and_gaps_that_are_wrong_are_told_by_name() {
     assert!(misspelt.stderr.contains("is it `R.tibia1` there?"), "{}", misspelt.stderr);
     // The same walk in a laboratory whose z axis points up.
     let upright = bench.track(&z_up(&plain), &[]);
-    assert!(upright.stderr.contains("the body lies in 12 of 12 frames"), "{}", upright.stderr);
+    assert!(upright.stderr.contains("the body lies in 12 of 12 instants"), "{}", upright.stderr);
     assert!(upright.stdout.contains("0.00 mm"), "{}", upright.stdout);
     let gap = plain.lines().enumerate().map(|(i, line)| {
         let mut cells: Vec<&str> = line.split('\t').collect();
@@ -229,7 +229,7 @@ fn tasks_choose_weights_and_values_and_refusals_have_places() {
     let file = write(bench.folder.path(), "setup.xml", &setup("elbow_flex_r"));
     let answer = bench.track(&plain, &["--tasks", &file]);
     assert!(
-        answer.stdout.starts_with("Tracked 7 frames from 0.05 s to 0.15 s by 36 markers"),
+        answer.stdout.starts_with("Tracked 7 instants from 0.05 s to 0.15 s by 36 markers"),
         "{}{}",
         answer.stdout,
         answer.stderr
@@ -254,7 +254,7 @@ fn tasks_choose_weights_and_values_and_refusals_have_places() {
     let said = refused(&["track", "adult", &trc, "--out", &bench.out()]);
     assert!(said.contains("adult: holds no markers"), "{said}");
     let said = refused(&["track", &bench.model, &trc, "--from", "9", "--out", &bench.out()]);
-    assert!(said.contains("no frame lies in the time that is asked for (from 9 s)"), "{said}");
+    assert!(said.contains("no instant lies in the time that is asked for (from 9 s)"), "{said}");
     let weightless = write(bench.folder.path(), "none.xml", &setup("elbow_flex_r").replace("<weight>1</weight>", ""));
     let said = refused(&["track", &bench.model, &trc, "--tasks", &weightless, "--out", &bench.out()]);
     assert!(said.contains("all 36 markers that are in both files have the weight 0"), "{said}");

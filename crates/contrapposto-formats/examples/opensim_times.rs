@@ -66,6 +66,7 @@ fn main() {
 }
 
 /// Inverse dynamics of each posture with speeds and accelerations that are given.
+#[inline(never)]
 fn dynamics<'p>(model: &Model, postures: impl Iterator<Item = &'p Posture>) {
     let (mut kinematics, mut external) = (Kinematics::new(model), ExternalTorque::new(model));
     let mut inertia = Inertia::new(model);

@@ -60,7 +60,9 @@ fn compare(place: &str) -> usize {
             kinematics.update(&model, &posture).unwrap();
             let (speeds, accelerations) = (by_rate(&model, &case["speed"]), by_rate(&model, &case["acceleration"]));
             inertia.update(&model, &kinematics, (&speeds, &accelerations), &[]).unwrap();
-            external.update(&model, &kinematics, inertia.loads()).unwrap();
+            let mut loads = vec![];
+            inertia.add_loads(&model, &kinematics, &mut loads);
+            external.update(&model, &kinematics, &loads).unwrap();
             let theirs = by_rate(&model, &case["torque"]);
             // The torques of inertia added to those of weight: the same by one pass less.
             let mut summed = ExternalTorque::new(&model);
@@ -171,7 +173,9 @@ fn inverse_dynamics_of_a_recorded_motion_is_opensims() {
         kinematics.update(&model, posture).unwrap();
         let rates = &moving.rates[i];
         inertia.update(&model, &kinematics, (&rates.speeds, &rates.accelerations), &[]).unwrap();
-        external.update(&model, &kinematics, inertia.loads()).unwrap();
+        let mut loads = vec![];
+        inertia.add_loads(&model, &kinematics, &mut loads);
+        external.update(&model, &kinematics, &loads).unwrap();
         for (rate, torque) in model.rates().iter().zip(external.torques()) {
             let theirs = numbers(&tool["forces"][&rate.name])[i];
             worst = worst.max((torque + theirs).abs());

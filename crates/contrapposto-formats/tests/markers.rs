@@ -121,7 +121,7 @@ fn tasks_of_a_setup_file_and_of_a_set_alone_are_read() {
     let coordinates: Vec<_> =
         read.coordinates.iter().map(|task| (task.name.as_str(), task.weight, task.value)).collect();
     assert_eq!(coordinates, [("knee", 1000.0, TaskValue::Default), ("hip", 0.0, TaskValue::Manual(0.25))]);
-    assert_eq!((read.time_range, read.notes.len()), (Some((0.5, 2.5)), 2), "{:?}", read.notes);
+    assert_eq!((read.time_range, read.notes.len() + read.named.len()), (Some((0.5, 2.5)), 2), "{:?}", read.notes);
     let from = SETUP.find("<IKTaskSet>").unwrap();
     let set = &SETUP[from..SETUP.find("<time_range>").unwrap()];
     for text in [set.to_owned(), format!("<OpenSimDocument>{set}</OpenSimDocument>")] {

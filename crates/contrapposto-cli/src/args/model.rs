@@ -258,10 +258,10 @@ pub(crate) struct LoadArgs {
 /// The frames of a motion, and the unit of its angles.
 #[derive(Debug, clap::Args)]
 pub(crate) struct FrameArgs {
-    /// Leave out the frames before this time, s.
+    /// Leave out the instants before this time, s.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) from: Option<f64>,
-    /// Leave out the frames after this time, s.
+    /// Leave out the instants after this time, s.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
     /// Angles of the postures are degrees, whatever the file says.

@@ -40,10 +40,10 @@ pub(crate) struct ScaleArgs {
     /// Unit of the markers, whatever the file says.
     #[arg(long, value_enum)]
     pub(crate) units: Option<UnitChoice>,
-    /// Begin of the frames that are averaged, s; as the setup file says when left out.
+    /// Begin of the times that are averaged, s; as the setup file says when left out.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) from: Option<f64>,
-    /// End of the frames that are averaged, s; as the setup file says when left out.
+    /// End of the times that are averaged, s; as the setup file says when left out.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
     /// File to write (.osim).

@@ -10,9 +10,9 @@ use super::model::ModelArgs;
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:\n  contrapposto track subject.osim walk.trc --out out\n  \
     contrapposto track subject.osim walk.trc --tasks Setup_IK.xml --out out\n  \
-    contrapposto assess subject.osim out/motion.mot --out report\n  \
+    contrapposto assess subject.osim out/motion.mot --grf walk_grf.xml --out report\n  \
     contrapposto track adult walk.bvh --out out\n\n\
-    The weighted squared distances of the markers, and the weighted squared errors of coordinates with a task, are least in every frame, as in \
+    The weighted squared distances of the markers, and the weighted squared errors of coordinates with a task, are least at every instant, as in \
     OpenSim's inverse kinematics. Locked coordinates keep their default, and ranges of clamped ones are hard limits. Writes motion.mot \
     and marker-errors.sto into DIR.\n\n\
     An animation (.bvh, .glb, .gltf; names of Mixamo, CMU and others, or --rig) moves the adult: `adult` gets the bones of the rig, `adult:female,1.65m,60kg` stays as \
@@ -36,10 +36,10 @@ pub(crate) struct TrackArgs {
     /// a C3D file with force plates or a screen axis; other files are taken as they are.
     #[arg(long, value_enum, conflicts_with = "rig")]
     pub(crate) up: Option<UpChoice>,
-    /// Leave out the frames before this time, s; as the setup file says when left out.
+    /// Leave out the instants before this time, s; as the setup file says when left out.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) from: Option<f64>,
-    /// Leave out the frames after this time, s; as the setup file says when left out.
+    /// Leave out the instants after this time, s; as the setup file says when left out.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
     /// Folder for the results; made if it is not there.

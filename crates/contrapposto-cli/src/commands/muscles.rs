@@ -58,7 +58,7 @@ pub(crate) fn each_frame<'a>(
     let mut of_bushings = passive.clone();
     let none = vec![0.0; model.rates().len()];
     for (index, (time, posture)) in frames.into_iter().enumerate() {
-        kinematics.update(model, posture).map_err(|why| Fail::Refused(format!("frame {index}: {why}")))?;
+        kinematics.update(model, posture).map_err(|why| Fail::Refused(format!("instant {index}: {why}")))?;
         geometry.update(model, &kinematics, &muscles.paths, rule);
         let states = |activation: f64| -> Vec<FiberState> {
             let all = muscles.muscles.iter();

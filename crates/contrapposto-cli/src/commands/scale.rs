@@ -17,6 +17,7 @@ use contrapposto_formats::osim::scaling::{self, Scaling};
 use contrapposto_formats::tissue::SourcedModel;
 use contrapposto_formats::xml::Limits;
 
+use super::track::print_other_files;
 use crate::args::ScaleArgs;
 use crate::fail::Fail;
 use crate::input::read;
@@ -40,7 +41,7 @@ pub(crate) fn scale(args: &ScaleArgs) -> Result<(), Fail> {
     let name = args.markers.display().to_string();
     let units = args.units.map(crate::args::UnitChoice::unit);
     let markers = read_markers(&name, &read(&args.markers, MOST_TABLE_BYTES as u64)?, units)?;
-    setup.notes.iter().for_each(|note| print_note("note", note));
+    print_other_files(args.setup.as_deref(), &setup.named, [&args.model, &args.markers]);
     markers.warnings.iter().for_each(|warning| print_note("warning", warning));
     let before = opened(&shown, &text)?;
     let averaged = frames(&markers, &name, time_range(args, setup.time_range))?;

@@ -79,7 +79,7 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         }
         (Some(path), frames) => {
             job.run(&order, &mut residual, |_, _| Ok(()))?;
-            sink(&format!("{} frames in {}\n", frames.len(), path.display()))?;
+            sink(&format!("{} instants in {}\n", frames.len(), path.display()))?;
         }
         (None, _) => table(&job, &order, ',', &mut residual, &mut sink)?,
     }

@@ -3,10 +3,12 @@
 pub(crate) mod doubts;
 pub(crate) mod matching;
 
+use std::path::Path;
+
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::tracking::{self, Goals, TrackedFrame, TrackingError};
-use contrapposto_formats::markers::{Markers, TrackingTasks, read_markers, tracking_tasks, turn_upright};
+use contrapposto_formats::markers::{Markers, NamedFile, TrackingTasks, read_markers, tracking_tasks, turn_upright};
 use contrapposto_formats::motion::{MOST_TABLE_BYTES, UnwritableTable, opensim_columns, write_sto};
 use contrapposto_formats::xml::Limits;
 
@@ -47,7 +49,10 @@ pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
         print_note("note", &turned(&name));
     }
     let tasks = tasks(args)?;
-    tasks.iter().flat_map(|tasks| &tasks.notes).for_each(|note| print_note("note", note));
+    if let Some(tasks) = &tasks {
+        print_other_files(args.tasks.as_deref(), &tasks.named, [Path::new(&args.model.model), &args.markers]);
+        tasks.notes.iter().for_each(|note| print_note("note", note));
+    }
     markers.warnings.iter().for_each(|warning| print_note("warning", warning));
     let [shown, tasks_file] = [Some(&args.model.model), args.tasks.as_ref()]
         .map(|path| path.map_or_else(String::new, |path| path.display().to_string()));
@@ -91,11 +96,20 @@ pub(super) fn tracked_so_far(
 /// The failure that ends the command once the frames so far are written, if there are more of them.
 pub(super) fn left_out(times: &[f64], done: usize) -> Result<Option<Fail>, Fail> {
     let failure =
-        |so_far: String| Fail::Job(format!("interrupted: {done} of {} frames were tracked{so_far}", times.len()));
+        |so_far: String| Fail::Job(format!("interrupted: {done} of {} instants were tracked{so_far}", times.len()));
     match (done, times.get(done.wrapping_sub(1))) {
         (done, _) if done == times.len() => Ok(None),
         (_, Some(last)) => Ok(Some(failure(format!(", up to {last} s, and written")))),
         (_, None) => Err(failure(String::new())),
+    }
+}
+
+/// Notes of the model and the markers that a setup file names otherwise than the command line.
+pub(super) fn print_other_files(setup: Option<&Path>, named: &[NamedFile], [model, markers]: [&Path; 2]) {
+    let setup = setup.map(|path| path.display().to_string()).unwrap_or_default();
+    for file in named {
+        let given = if file.element == "model_file" { model } else { markers };
+        file.note(&setup, given).iter().for_each(|note| print_note("note", note));
     }
 }
 
@@ -123,16 +137,16 @@ fn frames(
     let ends = markers.times.first().zip(markers.times.last());
     match ends {
         Some((first, last)) if times.is_empty() => Err(Fail::Refused(format!(
-            "{name}: no frame lies in the time that is asked for ({}); it goes from {first} s to {last} s",
+            "{name}: no instant lies in the time that is asked for ({}); it goes from {first} s to {last} s",
             asked(args.from.or(limits.map(|limits| limits.0)), args.to.or(limits.map(|limits| limits.1)))
         ))),
         _ if frames.iter().flatten().flatten().next().is_none() => Err(Fail::Refused(format!(
-            "{name}: none of the {} markers that are tracked has a place in any of the {} frames",
+            "{name}: none of the {} markers that are tracked has a place in any of the {} instants",
             matched.columns.len(),
             frames.len()
         ))),
         _ if frames.len().saturating_mul(coordinates) > MOST_MOTION_VALUES => Err(Fail::Refused(format!(
-            "{name}: {} frames of {coordinates} coordinates are more than {MOST_MOTION_VALUES} values; take a part of them with --from and --to",
+            "{name}: {} instants of {coordinates} coordinates are more than {MOST_MOTION_VALUES} values; take a part of them with --from and --to",
             frames.len()
         ))),
         _ => Ok((times, frames)),
@@ -170,8 +184,8 @@ pub(super) fn errors(times: &[f64], tracked: &[TrackedFrame]) -> Result<String, 
 fn answer(matched: &Matched, times: &[f64], tracked: &[TrackedFrame]) -> String {
     let (first, last) = (times[0], times[times.len() - 1]);
     let frames = match tracked.len() {
-        1 => format!("1 frame at {first} s"),
-        count => format!("{count} frames from {first} s to {last} s"),
+        1 => format!("1 instant at {first} s"),
+        count => format!("{count} instants from {first} s to {last} s"),
     };
     let largest = doubts::largest(times, tracked).map_or_else(String::new, |(time, index, error)| {
         format!(", the largest {} (`{}` at {time} s)", length(error), matched.names[index])

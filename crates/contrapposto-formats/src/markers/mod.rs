@@ -4,6 +4,7 @@
 mod c3d;
 mod marker_set;
 mod measurement;
+mod named_file;
 mod scale_setup;
 mod tasks;
 mod trc;
@@ -12,6 +13,7 @@ pub(crate) use c3d::LEAST_FORCE;
 pub use c3d::{C3dError, ForcePlate, ForcePlates, is_c3d, read_c3d, read_force_plates};
 pub use marker_set::marker_set;
 pub use measurement::{Measurement, MeasurementError};
+pub use named_file::NamedFile;
 pub use scale_setup::{ACCEPTED_FACTORS, Order, ScaleSetup, scale_setup};
 pub use tasks::{CoordinateTask, MarkerTask, TaskFileError, TaskValue, TrackingTasks, tracking_tasks};
 pub use trc::{MarkerUnit, Markers, read_trc, turn_upright};

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::measurement::axis_flags;
 use super::tasks::{Reader, text};
-use super::{Measurement, TaskFileError, TrackingTasks};
+use super::{Measurement, NamedFile, TaskFileError, TrackingTasks};
 use crate::xml::{self, Limits, Node, Position, shorten};
 
 /// A step of scaling.
@@ -42,8 +42,8 @@ pub struct ScaleSetup {
     pub placing: Option<TrackingTasks>,
     /// Markers move onto the measured ones.
     pub moves_markers: bool,
-    /// Things of the file that are done otherwise here, a sentence each.
-    pub notes: Vec<String>,
+    /// Model and markers that the file names.
+    pub named: Vec<NamedFile>,
 }
 
 /// Reads the setup file of a ScaleTool. `file` stands in errors.
@@ -69,7 +69,7 @@ pub fn scale_setup(file: &str, bytes: &[u8]) -> Result<ScaleSetup, TaskFileError
     if let Some(maker) = tool.child("GenericModelMaker") {
         setup.marker_set_file = text(maker, "marker_set_file");
         if let Some(model) = text(maker, "model_file") {
-            setup.not_used(file, "model_file", &model, "the model");
+            setup.name("model_file", model);
         }
     }
     if let Some(scaler) = tool.child("ModelScaler")
@@ -86,11 +86,10 @@ pub fn scale_setup(file: &str, bytes: &[u8]) -> Result<ScaleSetup, TaskFileError
 }
 
 impl ScaleSetup {
-    fn not_used(&mut self, file: &str, element: &str, value: &str, what: &str) {
-        let said = format!("is not used: {what} is that of the command line");
-        let note = format!("{file}: <{element}> {} {said}", shorten(value));
-        if !self.notes.contains(&note) {
-            self.notes.push(note);
+    fn name(&mut self, element: &'static str, name: String) {
+        let file = NamedFile { element, name };
+        if !self.named.contains(&file) {
+            self.named.push(file);
         }
     }
 }
@@ -122,7 +121,7 @@ impl Reader<'_> {
         setup.preserve_mass_distribution =
             node.child("preserve_mass_distribution").is_some() && self.flag(node, "preserve_mass_distribution")?;
         if let Some(markers) = text(node, "marker_file") {
-            setup.not_used(self.file, "marker_file", &markers, "the file of markers");
+            setup.name("marker_file", markers);
         }
         Ok(())
     }
@@ -170,7 +169,7 @@ impl Reader<'_> {
         let mut tasks = set.map_or_else(|| Ok(TrackingTasks::default()), |set| self.tasks(set))?;
         tasks.time_range = self.time_range(node)?.filter(|(_, to)| *to >= 0.0);
         if let Some(markers) = text(node, "marker_file") {
-            setup.not_used(self.file, "marker_file", &markers, "the file of markers");
+            setup.name("marker_file", markers);
         }
         setup.placing = Some(tasks);
         setup.moves_markers = node.child("move_model_markers").is_none() || self.flag(node, "move_model_markers")?;

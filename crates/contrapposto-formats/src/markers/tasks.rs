@@ -1,5 +1,6 @@
 //! Reads the tasks of marker tracking: OpenSim's IKTaskSet, alone or in the setup file of its InverseKinematicsTool.
 
+use super::NamedFile;
 use crate::xml::{self, Limits, Node, Position, XmlError};
 
 /// A marker that is tracked.
@@ -48,6 +49,8 @@ pub struct TrackingTasks {
     pub time_range: Option<(f64, f64)>,
     /// Things of the file that are done otherwise here, a sentence each.
     pub notes: Vec<String>,
+    /// Model and markers that a setup file names.
+    pub named: Vec<NamedFile>,
 }
 
 /// The reason for which a file holds no tasks that can be used.
@@ -97,11 +100,7 @@ pub fn tracking_tasks(file: &str, bytes: &[u8]) -> Result<TrackingTasks, TaskFil
     let mut tasks = reader.tasks(set)?;
     if let Some(tool) = tool {
         for element in ["model_file", "marker_file"] {
-            if let Some(named) = text(tool, element) {
-                let named = xml::shorten(&named);
-                let said = "is not used: model and markers are those of the command line";
-                tasks.notes.push(format!("{file}: <{element}> {named} {said}"));
-            }
+            tasks.named.extend(text(tool, element).map(|name| NamedFile { element, name }));
         }
         tasks.time_range = reader.time_range(tool)?;
         let weight = text(tool, "constraint_weight").map(|weight| weight.to_ascii_lowercase());

@@ -68,7 +68,7 @@ impl<'a> Evaluation<'a> {
             let Rates { speeds, accelerations } = &self.rates[index];
             let update = inertia.update(model, torques.kinematics(), (speeds, accelerations), &self.loads);
             update.map_err(|error| AssessError::Inertia { index, error })?;
-            self.loads.extend_from_slice(inertia.loads());
+            inertia.add_loads(model, torques.kinematics(), &mut self.loads);
         }
         match &mut self.contact {
             Some(contact) => torques.apply_with_contact(model, &self.loads, contact, Quantities::TORQUES),

@@ -8,23 +8,25 @@ use crate::posture::PostureError;
 #[non_exhaustive]
 pub enum MotionError {
     /// Too few postures.
-    #[error("{found} frames; accelerations need at least {needed}")]
+    #[error("{found} instants; accelerations need at least {needed}")]
     TooFew {
-        /// Number of frames.
+        /// Number of instants.
         found: usize,
-        /// Least number of frames.
+        /// Least number of instants.
         needed: usize,
     },
     /// Times do not rise.
-    #[error("frame {index} is at {time} s, not after the one before; accelerations need times that rise")]
+    #[error("instant {index} is at {time} s, not after the one before; accelerations need times that rise")]
     Order {
-        /// Number of the frame, counted from 0.
+        /// Number of the instant, counted from 0.
         index: usize,
-        /// Time of the frame, s.
+        /// Time of the instant, s.
         time: f64,
     },
-    /// Two frames are much nearer than the others.
-    #[error("two frames are {shortest} s apart, and {average} s on average; a filter needs frames about as far apart")]
+    /// Two instants are much nearer than the others.
+    #[error(
+        "two instants are {shortest} s apart, and {average} s on average; a filter needs instants about as far apart"
+    )]
     Uneven {
         /// Shortest step, s.
         shortest: f64,
@@ -32,16 +34,16 @@ pub enum MotionError {
         average: f64,
     },
     /// The cut-off is no frequency that the samples have.
-    #[error("a cut-off of {cutoff} Hz: it must be above 0 and below half of the {sampling:.6} frames a second")]
+    #[error("a cut-off of {cutoff} Hz: it must be above 0 and below half of the {sampling:.6} instants a second")]
     Cutoff {
         /// The cut-off, Hz.
         cutoff: f64,
-        /// Frames a second.
+        /// Instants a second.
         sampling: f64,
     },
-    /// A rotation turns too far between two frames.
+    /// A rotation turns too far between two instants.
     #[error(
-        "the rotation that begins with `{coordinate}` turns too far between frames near {time} s to be differentiated"
+        "the rotation that begins with `{coordinate}` turns too far between instants near {time} s to be differentiated"
     )]
     Turn {
         /// First component of its quaternion.
@@ -50,15 +52,15 @@ pub enum MotionError {
         time: f64,
     },
     /// A posture does not fit the model.
-    #[error("frame {index}: {error}")]
+    #[error("instant {index}: {error}")]
     Posture {
-        /// Number of the frame, counted from 0.
+        /// Number of the instant, counted from 0.
         index: usize,
         /// The reason.
         error: PostureError,
     },
-    /// No rotation moves, or there are too few cut-offs below half of the frame rate.
-    #[error("residual analysis suggests no cut-off: it needs rotations that move, and 12 frames a second or more")]
+    /// No rotation moves, or there are too few cut-offs below half of the sampling rate.
+    #[error("residual analysis suggests no cut-off: it needs rotations that move, and 12 instants a second or more")]
     NoCutoff,
     /// No spline.
     #[error(transparent)]

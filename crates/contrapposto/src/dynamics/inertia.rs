@@ -20,9 +20,10 @@ pub enum InertiaError {
     Load(#[from] LoadError),
 }
 
-/// A segment with inertia, in the frame of the mobility that carries it.
+/// Segments with inertia that are fixed to each other, in the frame of the mobility that carries them.
 #[derive(Clone, Debug)]
 struct Body {
+    /// The first of them.
     segment: usize,
     mobility: usize,
     mass: f64,
@@ -35,11 +36,14 @@ struct Body {
 /// [`Inertia::update`].
 #[derive(Clone, Debug)]
 pub struct Inertia {
+    /// One a segment.
+    segments: Vec<Body>,
+    /// One a mobility: its segments as one body, which has the same torques.
     bodies: Vec<Body>,
     acceleration: Acceleration,
-    /// Force, then couple of each body; then the forces of held weights.
-    loads: Vec<Load>,
-    /// The same forces and couples about the ground origin.
+    /// Forces of inertia of held weights.
+    held: Vec<Load>,
+    /// Forces and couples of `bodies` and `held` about the ground origin.
     wrenches: Vec<Wrench>,
     torque: WrenchTorques,
     /// About the axes of three-axis joints, for a body with such joints.
@@ -58,15 +62,17 @@ impl Inertia {
             let counts = of.mass > 0.0 || inertia != Matrix3::zeros();
             counts.then_some(Body { segment, mobility, mass: of.mass, center, inertia })
         };
-        let bodies: Vec<Body> = (0..model.segments.len()).filter_map(body).collect();
-        let load = |segment: usize, kind| Load { segment, point: model.segments[segment].center_of_mass, kind };
-        let none = Vector3::zeros();
-        let of_body = |body: &Body| {
-            [LoadKind::Force(none, FixedIn::World), LoadKind::Couple(none, FixedIn::World)]
-                .map(|kind| load(body.segment, kind))
-        };
+        let segments: Vec<Body> = (0..model.segments.len()).filter_map(body).collect();
+        let mut bodies: Vec<Body> = vec![];
+        for segment in &segments {
+            match bodies.iter_mut().find(|body| body.mobility == segment.mobility) {
+                Some(body) => body.join(segment),
+                None => bodies.push(segment.clone()),
+            }
+        }
         Self {
-            loads: bodies.iter().flat_map(of_body).collect(),
+            held: vec![],
+            segments,
             bodies,
             acceleration: Acceleration::new(model),
             wrenches: vec![],
@@ -88,25 +94,25 @@ impl Inertia {
         held: &[Load],
     ) -> Result<(), InertiaError> {
         self.acceleration.update(model, kinematics, speeds, accelerations)?;
-        self.loads.truncate(2 * self.bodies.len());
         self.wrenches.clear();
-        for (body, loads) in self.bodies.iter().zip(self.loads.chunks_exact_mut(2)) {
+        for body in &self.bodies {
             let (force, couple, arm) = self.acceleration.inertia(kinematics, body);
-            loads[0].kind = LoadKind::Force(force, FixedIn::World);
-            loads[1].kind = LoadKind::Couple(couple, FixedIn::World);
+            body.loads(model, force, couple).iter().try_for_each(|load| load.check(model))?;
             let moment = (kinematics.origins[body.mobility] + arm).cross(&force) + couple;
             self.wrenches.push(Wrench { segment: body.segment, force, moment });
         }
+        self.held.clear();
         for load in held {
             load.check(model)?;
             if let LoadKind::Weight(mass) = load.kind {
                 let force = -mass * self.acceleration.station(model, kinematics, load.segment, load.point);
-                self.loads.push(Load { kind: LoadKind::Force(force, FixedIn::World), ..*load });
+                let inertia = Load { kind: LoadKind::Force(force, FixedIn::World), ..*load };
+                inertia.check(model)?;
+                self.held.push(inertia);
                 let moment = kinematics.station(model, load.segment, load.point).cross(&force);
                 self.wrenches.push(Wrench { segment: load.segment, force, moment });
             }
         }
-        self.loads.iter().try_for_each(|load| load.check(model))?;
         self.torque.update(model, kinematics, &self.wrenches);
         Ok(())
     }
@@ -125,9 +131,14 @@ impl Inertia {
         &self.about_axes.as_ref().unwrap_or(&self.torque).torques
     }
 
-    /// Forces and couples of inertia, to be added to the other loads of the same posture.
-    pub fn loads(&self) -> &[Load] {
-        &self.loads
+    /// Forces and couples of inertia of the last update, one of both a segment, then the forces of held weights, behind the other `loads` of the
+    /// same posture. Does not allocate where `loads` has the space.
+    pub fn add_loads(&self, model: &Model, kinematics: &Kinematics, loads: &mut Vec<Load>) {
+        for segment in &self.segments {
+            let (force, couple, _) = self.acceleration.inertia(kinematics, segment);
+            loads.extend(segment.loads(model, force, couple));
+        }
+        loads.extend_from_slice(&self.held);
     }
 
     /// Torque of inertia alone, by rate: the part of the external torque that the body at rest would not have, N m (N for slides).
@@ -162,8 +173,32 @@ impl Inertia {
     }
 }
 
+impl Body {
+    /// Takes a segment in that is fixed to this body, by the parallel axis theorem.
+    fn join(&mut self, other: &Self) {
+        let mass = self.mass + other.mass;
+        let apart = other.center - self.center;
+        // A part without mass has its inertia about any point.
+        let share = if mass > 0.0 { other.mass / mass } else { 0.0 };
+        let squares = Matrix3::from_diagonal_element(apart.norm_squared()) - apart * apart.transpose();
+        self.inertia += other.inertia + share * self.mass * squares;
+        self.center += share * apart;
+        self.mass = mass;
+    }
+
+    /// Force (N) and couple (N m) of a segment's inertia, ground axes.
+    fn loads(&self, model: &Model, force: Vector3<f64>, couple: Vector3<f64>) -> [Load; 2] {
+        let point = model.segments[self.segment].center_of_mass;
+        [LoadKind::Force(force, FixedIn::World), LoadKind::Couple(couple, FixedIn::World)].map(|kind| Load {
+            segment: self.segment,
+            point,
+            kind,
+        })
+    }
+}
+
 impl Acceleration {
-    /// Force (N) and couple (N m) of the inertia of a segment, and its centre seen from the mobility's origin (m), ground axes.
+    /// Force (N) and couple (N m) of the inertia of a body, and its centre seen from the mobility's origin (m), ground axes.
     fn inertia(&self, kinematics: &Kinematics, body: &Body) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
         let Body { mobility, mass, center, inertia, .. } = body;
         let rotation = &kinematics.rotations[*mobility];

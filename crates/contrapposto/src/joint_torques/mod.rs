@@ -95,7 +95,7 @@ pub struct JointTorques {
     muscles: Option<Box<JointMuscles>>,
     /// By rate, about axes, N m.
     active: Vec<f64>,
-    /// The loads given, then the contact forces.
+    /// The loads given, then the contact forces, or those of inertia.
     loads: Vec<Load>,
     /// The quantities of the last update.
     computed: Quantities,
@@ -269,7 +269,7 @@ impl JointTorques {
         &self.kinematics
     }
 
-    /// The loads of the last update, then its contact forces.
+    /// The loads of the last update, then its contact forces, or the loads of inertia.
     pub fn loads(&self) -> &[Load] {
         &self.loads
     }

@@ -21,7 +21,13 @@ impl JointTorques {
     ) -> Result<(), JointTorquesError> {
         let as_loads = quantities.gradient || self.axes.is_some();
         self.begin(model, loads, quantities)?;
-        self.loads.extend_from_slice(if as_loads { inertia.loads() } else { &[] });
-        self.finish(model, quantities, Some(inertia).filter(|_| !as_loads))
+        if as_loads {
+            inertia.add_loads(model, &self.kinematics, &mut self.loads);
+            return self.finish(model, quantities, None);
+        }
+        self.finish(model, quantities, Some(inertia))?;
+        // Whoever asks for the loads, joint reactions for one, sees them all.
+        inertia.add_loads(model, &self.kinematics, &mut self.loads);
+        Ok(())
     }
 }

@@ -78,7 +78,8 @@ impl Job {
         if let ([(first, _), .., (last, _)], frames) = (recorded.frames.as_slice(), recorded.frames.len())
             && first >= last
         {
-            let why = format!("its {frames} frames all have the time {first} s; times must rise, or give one frame");
+            let why =
+                format!("its {frames} instants all have the time {first} s; times must rise, or give one instant");
             return Err(Fail::Refused(format!("{name}: {why}")));
         }
         let Recorded { frames: motion, rates, said, doubts } = recorded;

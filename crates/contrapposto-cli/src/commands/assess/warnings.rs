@@ -34,7 +34,7 @@ pub(super) fn warnings(
         );
         warnings.push(if !args.carried.support.is_empty() {
             format!(
-                "in {} of {frames} frames the supports cannot hold the body; the missing force and moment: {missing}",
+                "in {} of {frames} instants the supports cannot hold the body; the missing force and moment: {missing}",
                 found.unheld
             )
         } else if args.under.grf.is_some() {

@@ -35,7 +35,8 @@ pub(super) fn frames(markers: &Markers, name: &str, (from, to): (f64, f64)) -> R
     let (first, last) = (markers.times[0], markers.times[markers.times.len() - 1]);
     if from > last || to < first || from > to {
         let asked = asked(Some(from).filter(|time| time.is_finite()), Some(to).filter(|time| time.is_finite()));
-        let why = format!("no frame lies in the time that is asked for ({asked}); it goes from {first} s to {last} s");
+        let why =
+            format!("no instant lies in the time that is asked for ({asked}); it goes from {first} s to {last} s");
         return Err(Fail::Refused(format!("{name}: {why}")));
     }
     Ok(markers.frames_between(from, to))

@@ -195,7 +195,7 @@ impl Files<'_> {
             return Err(format!("the markers `{a}` and `{b}` of {} lie on the same point", self.shown));
         }
         let measured = self.markers.mean_distance(columns, self.frames.clone());
-        let measured = measured.ok_or_else(|| format!("no frame of {} has both `{a}` and `{b}`", self.name))?;
+        let measured = measured.ok_or_else(|| format!("no instant of {} has both `{a}` and `{b}`", self.name))?;
         Ok((distance, measured))
     }
 }

@@ -50,7 +50,7 @@ pub(super) fn place(
     let observed: Vec<Option<Vector3<f64>>> = matched.columns.iter().map(place).collect();
     if observed.iter().flatten().next().is_none() {
         return Err(Fail::Refused(format!(
-            "{name}: none of the tracked markers has a place in the frames that are averaged"
+            "{name}: none of the tracked markers has a place at the times that are averaged"
         )));
     }
     let model = &opened.model;

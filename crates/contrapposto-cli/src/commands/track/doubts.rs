@@ -40,7 +40,7 @@ pub(crate) fn doubts(model: &Model, matched: &Matched, unit: MarkerUnit, motion:
     if open > 0 {
         let worst = motion.2.iter().map(|frame| frame.solved.optimality).fold(0.0, f64::max);
         let frames = motion.2.len();
-        warnings.push(format!("{open} of {frames} frames are not solved to the end: optimality up to {worst:.1e}"));
+        warnings.push(format!("{open} of {frames} instants are not solved to the end: optimality up to {worst:.1e}"));
     }
     other_unit.into_iter().chain(sides).chain(warnings).collect()
 }
@@ -151,7 +151,7 @@ fn swapped_pairs(model: &Model, matched: &Matched, (times, frames, tracked): Mot
     let swapped = pairs.iter().zip(&found).filter(|(_, found)| found.0 > 0);
     let said = |(&(a, b), &(count, time)): (&(usize, usize), &(usize, f64))| {
         let (a, b) = (&matched.names[a], &matched.names[b]);
-        format!("`{a}` and `{b}` seem to be swapped in {count} frames, from {time} s on")
+        format!("`{a}` and `{b}` seem to be swapped in {count} instants, from {time} s on")
     };
     swapped.map(said).collect()
 }
@@ -180,7 +180,7 @@ fn lying(model: &Model, (_, _, tracked): Motion<'_>) -> Option<String> {
     let count = tracked.iter().filter(is_lying).count();
     (count as f64 >= NEARLY_ALL * tracked.len() as f64 && count > 0).then(|| {
         format!(
-            "the body lies in {count} of {} frames; does the vertical axis of the markers point along z? Gravity acts along {}: --up z turns \
+            "the body lies in {count} of {} instants; does the vertical axis of the markers point along z? Gravity acts along {}: --up z turns \
              them",
             tracked.len(),
             axis_of(&-up)
@@ -208,7 +208,7 @@ fn gaps(matched: &Matched, (_, frames, tracked): Motion<'_>) -> Vec<String> {
     }
     let empty = tracked.iter().filter(|frame| frame.seen == 0).count();
     if empty > 0 {
-        warnings.push(format!("{empty} frames have no marker at all; the posture stays there"));
+        warnings.push(format!("{empty} instants have no marker at all; the posture stays there"));
     }
     warnings
 }

@@ -114,7 +114,7 @@ pub(super) fn rule_word(rule: RuleChoice) -> &'static str {
 
 pub(crate) fn readable(opened: &SourcedModel, frame: &MuscleFrame<'_>) -> String {
     let mut text = format!(
-        "frame {} at {} s, rule {}, activation {}\n",
+        "instant {} at {} s, rule {}, activation {}\n",
         frame.index,
         frame.time,
         rule_word(frame.rule),
