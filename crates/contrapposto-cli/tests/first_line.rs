@@ -68,3 +68,21 @@ fn a_fall_names_the_loads() {
         assert!(!pulled.contains("kilograms"), "{pulled}");
     }
 }
+
+/// Nobody judges ligaments and grip of a body that falls; the table of changes says so instead of `none` and `less than half` of 3 tonnes in a hand.
+#[test]
+fn the_grip_and_ligaments_of_a_body_that_falls_are_told_as_not_judged() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "format = 1\n[model]\nadult = { sex = \"male\", stature_m = 1.75, mass_kg = 75 }\n[[support]]\nsegment = \"calcn_r\"\n\
+                [[support]]\nsegment = \"calcn_l\"\n[[load]]\nsegment = \"hand_r\"\nmass_kg = 3000\n[[task]]\nkind = \"effort\"\n[strategy]\n\
+                kind = \"active\"\n[run]\nduration_s = 5\n";
+    let scenario = write(folder.path(), "job.toml", text);
+    let run = run(&["simulate", &scenario, "--no-report"]);
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    let row = |start: &str| run.stdout.lines().find(|line| line.trim_start().starts_with(start)).unwrap().to_owned();
+    let as_it_is = row("as it is");
+    assert_eq!(as_it_is.matches("not judged").count(), 2, "{}", run.stdout);
+    assert!(!as_it_is.contains("less than half") && !as_it_is.contains("none"), "{as_it_is}");
+    let lighter = row("98");
+    assert!(lighter.contains("half or more") || lighter.contains("less than half"), "{lighter}");
+}

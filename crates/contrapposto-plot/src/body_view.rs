@@ -12,7 +12,10 @@ pub(crate) const MOST_PARTS: usize = 120;
 /// Greatest number of muscles that are drawn.
 pub(crate) const MOST_MUSCLES: usize = 1000;
 
-/// Surfaces and things farther than this beyond the rest, m, are cut off.
+/// Surfaces and things that reach no farther than this beyond the rest, m, are drawn whole: tables and counters.
+const WHOLE_BOX: f64 = 1.2;
+
+/// Surfaces and things that reach farther, such as walls, are cut off at this distance beyond the rest, m.
 const FARTHEST_BOX: f64 = 0.35;
 
 /// A direction of view.
@@ -87,16 +90,19 @@ impl Bounds {
         bounds
     }
 
-    /// Takes in surfaces and things, as far as they are near the rest.
+    /// Takes in surfaces and things: whole where they end near the rest, else a strip of them.
     fn take_boxes(&mut self, posture: &BodyPosture, view: &View) {
         if self.is_empty() {
             return;
         }
         let near = *self;
-        for corner in posture.boxes().flat_map(|(corners, _)| corners) {
-            let seen = view.project(corner);
-            let within = |k: usize| seen[k].clamp(near.low[k] - FARTHEST_BOX, near.high[k] + FARTHEST_BOX);
-            self.take([within(0), within(1)]);
+        for (corners, _) in posture.boxes() {
+            let seen = corners.map(|corner| view.project(corner));
+            let ends_near =
+                |k: usize| seen.iter().all(|at| at[k] >= near.low[k] - WHOLE_BOX && at[k] <= near.high[k] + WHOLE_BOX);
+            let margin = [0, 1].map(|k| if ends_near(k) { WHOLE_BOX } else { FARTHEST_BOX });
+            let within = |at: [f64; 3], k: usize| at[k].clamp(near.low[k] - margin[k], near.high[k] + margin[k]);
+            seen.iter().for_each(|at| self.take([within(*at, 0), within(*at, 1)]));
         }
     }
 

@@ -239,6 +239,43 @@ fn boxes_are_translucent_cut_off_far_from_the_body_and_named_in_the_legend() {
     assert!(!bare.contains("fill-opacity") && !bare.contains("#6a2c91"));
 }
 
+/// The rectangle of the marks in the first view that have the colour of things, px, without the samples of the legend.
+fn thing_in_first_view(svg: &str) -> (f64, f64) {
+    let glass = svg.lines().find(|line| line.contains("fill-opacity") && line.contains("#5f7690")).unwrap();
+    let numbers: Vec<f64> =
+        attribute(glass, "d").replace(['M', 'L', 'Z'], " ").split_whitespace().map(|n| n.parse().unwrap()).collect();
+    let across = numbers.chunks_exact(2).map(|p| p[0]);
+    across.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+}
+
+/// Pixels of a metre, from the scale bar of the legend, the last line before the length that it stands for.
+fn pixels_per_metre(svg: &str) -> f64 {
+    let lines: Vec<&str> = svg.lines().collect();
+    let end = lines.iter().rposition(|line| line.contains(" m</text>")).unwrap();
+    let metres: f64 = texts(lines[end])[0].1.trim_end_matches(" m").parse().unwrap();
+    let bar = attribute(lines[end - 3], "d").replace(['M', 'L'], " ");
+    let bar: Vec<f64> = bar.split_whitespace().map(|n| n.parse().unwrap()).collect();
+    (bar[2] - bar[0]) / metres
+}
+
+/// A table of 2 m is as long in pixels as the scale bar of the legend says; of a wall of 30 m only a strip is drawn.
+#[test]
+fn a_wide_table_is_drawn_whole_and_a_wall_is_cut_off() {
+    let drawn = |from: f64, to: f64| {
+        let mut posture = body(0.1);
+        let end = |i: usize, bit: usize| if i & bit == 0 { 0.0 } else { 1.0 };
+        let corners =
+            std::array::from_fn(|i| [0.4 + 0.6 * end(i, 1), 0.9 + 0.04 * end(i, 2), from + (to - from) * end(i, 4)]);
+        (posture.surfaces, posture.start) = (vec![], vec![]);
+        posture.things = vec![BodyThing { label: "a table".to_owned(), corners }];
+        let svg = body_figure(&figure(vec![posture], "")).svg();
+        let (low, high) = thing_in_first_view(&svg);
+        (high - low) / pixels_per_metre(&svg)
+    };
+    assert!((drawn(-1.3, 0.7) - 2.0).abs() < 0.01, "{}", drawn(-1.3, 0.7));
+    assert!(drawn(-15.0, 15.0) < 1.6, "{}", drawn(-15.0, 15.0));
+}
+
 #[test]
 fn arrows_of_forces_have_the_scale_of_the_legend() {
     let svg = body_figure(&figure(vec![body(0.1)], "")).svg();

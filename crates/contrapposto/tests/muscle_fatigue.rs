@@ -1,7 +1,7 @@
 //! Tests muscles that tire while they share torques: against the law of a joint, a second derivation in small steps, and conditions of
 //! optimality.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::fatigue::{Compartments, FatigueLaw, FatigueState, ThreeCompartment};
 use contrapposto::kinematics::Kinematics;

@@ -7,6 +7,9 @@ use crate::verdict::{A_DAY, Verdict, VerdictKind, has_motors, how_long};
 /// Names of the columns of times.
 const OF_PEOPLE: [&str; 2] = ["lasts (mean strength)", "lasts (weaker people, one in six)"];
 
+/// Said of hazards and of the grip of a body that falls.
+const NOT_JUDGED: &str = "not judged";
+
 /// Changes beside the job as it is, a row each, the job first and then the change that helps most.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Gains {
@@ -53,7 +56,7 @@ impl Gains {
             let mut cells = vec![row.change.to_owned(), row.time()];
             cells.extend(people.then(|| row.time_of_weaker()));
             cells.extend(hazards.then(|| row.hazards_in_words()));
-            cells.extend(hands.then(|| if row.hands > 0 { "half or more" } else { "less than half" }.to_owned()));
+            cells.extend(hands.then(|| row.grip_in_words()));
             cells
         };
         Self { columns: columns.into_iter().map(str::to_owned).collect(), rows: rows.iter().map(cells).collect() }
@@ -107,9 +110,19 @@ impl Row<'_> {
         }
     }
 
-    /// `none`, `1 joint`, `2 joints`.
+    /// `half or more` of the strength of the grip, `less than half`, or that nobody judged a body that falls.
+    fn grip_in_words(&self) -> String {
+        match (self.hands, self.kind) {
+            (1.., _) => "half or more".to_owned(),
+            (0, VerdictKind::CannotStand) => NOT_JUDGED.to_owned(),
+            (0, _) => "less than half".to_owned(),
+        }
+    }
+
+    /// `none`, `1 joint`, `2 joints`, or that nobody judged a body that falls.
     fn hazards_in_words(&self) -> String {
         match self.hazards {
+            0 if self.kind == VerdictKind::CannotStand => NOT_JUDGED.to_owned(),
             0 => "none".to_owned(),
             1 => "1 joint".to_owned(),
             joints => format!("{joints} joints"),
