@@ -11,8 +11,8 @@ copied into a temporary folder. Where a pipeline has no motion or no scaled mode
 before the first one of the motion, which OpenSim extrapolates, are left out. `opensim_times.py` times both.
 
 Two differences have their cause in the programs, which this script shows:
-- Between samples forces are straight lines here and natural cubic splines in OpenSim. Both programs get the forces once more at 2 kHz, from natural
-  cubic splines, and the limit holds for these; it matters where forces have 60 Hz (Hamner).
+- Between samples forces are straight lines here and natural cubic splines in OpenSim; `--grf-splines` takes splines here, too, and the limit holds for
+  these. It matters where forces have 60 Hz (Hamner).
 - OpenSim's accelerations of a joint whose one coordinate drives several rotations (the knee of Rajagopal2016) are not the second derivative of its own
   positions: both programs' force on the root of a swinging knee is compared with second differences of OpenSim's centre of mass. The limit does not
   hold for torques of such a model; that of momentum does.
@@ -86,23 +86,6 @@ def tracked(models, folder, name, program):
     run = lambda *command: subprocess.run([program, *map(str, command)], check=True, capture_output=True)
     run("scale", models / model, folder / static, "--setup", folder / scale, "--out", folder / "scaled.osim")
     run("track", folder / "scaled.osim", folder / markers, "--tasks", folder / tasks, "--out", folder / "tracked")
-
-
-def finer(loads, folder):
-    """Loads whose forces are those of natural cubic splines at FINE."""
-    setup = xml.etree.ElementTree.parse(loads)
-    node = next(setup.iter("datafile"))
-    _, _, body = (loads.parent / node.text.strip()).read_text().replace("\r", "").partition("endheader")
-    labels, *lines = [line.strip() for line in body.splitlines() if line.strip()]
-    rows = numpy.array([[float(cell) for cell in line.split()] for line in lines])
-    times = numpy.arange(rows[0, 0], rows[-1, 0], 1 / FINE)
-    values = CubicSpline(rows[:, 0], rows[:, 1:], bc_type="natural")(times)
-    head = f"forces\nversion=1\nnRows={len(times)}\nnColumns={rows.shape[1]}\ninDegrees=no\nendheader\n"
-    text = ["\t".join(f"{cell:.10g}" for cell in (at, *row)) for at, row in zip(times, values)]
-    (folder / "finer.mot").write_text(head + "\t".join(labels.split()) + "\n" + "\n".join(text) + "\n")
-    node.text = "finer.mot"
-    setup.write(folder / "finer.xml")
-    return folder / "finer.xml"
 
 
 def opensims(model_path, motion, loads, cutoff, times, folder):
@@ -203,13 +186,12 @@ def compare(pipelines, name, program):
         mine = our_torques(loads, *moving)
         as_given = opensims(model, motion, loads, cutoff, times, folder)
         given, rest = differences(as_given, mine), differences(as_given, our_torques(loads, "--static"))
-        fine = finer(loads, folder)
-        smooth = differences(opensims(model, motion, fine, cutoff, times, folder), our_torques(fine, *moving))
-        print(f"{name}: {len(mine['time'])} instants, cut-off {cutoff:g} Hz; peak, difference, with forces of one interpolation, at rest")
+        smooth = differences(as_given, our_torques(loads, *moving, "--grf-splines"))
+        print(f"{name}: {len(mine['time'])} instants, cut-off {cutoff:g} Hz; peak, difference, with splines between forces, at rest")
         for label, (peak, difference) in given.items():
             print(f"  {label:25} {peak:9.3f} {difference:8.5f} ({100 * difference / peak:.4f} %) {smooth[label][1]:8.5f} {rest[label][1]:8.3f}")
         worst = [max(difference / peak for peak, difference in rows.values()) for rows in (given, smooth)]
-        print(f"  greatest difference {100 * worst[0]:.4f} % of a peak, {100 * worst[1]:.4f} % with forces of one interpolation")
+        print(f"  greatest difference {100 * worst[0]:.4f} % of a peak, {100 * worst[1]:.4f} % with --grf-splines")
         if name not in TURNING_KNEES:
             return worst[1] <= LARGEST_SHARE
         of_ours, of_theirs = momentum(model, TURNING_KNEES[name], program, folder)

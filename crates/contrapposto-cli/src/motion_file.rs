@@ -32,6 +32,10 @@ pub(crate) fn loads_of(
         loads.push(loads::force(model, text).map_err(|error| Fail::Refused(format!("--force \"{text}\": {error}")))?);
     }
     let ground = args.grf.as_deref().map(|path| ground_reaction(path, args, (model, motion), notes)).transpose()?;
+    let ground = match ground {
+        Some(ground) if args.grf_splines => Some(ground.with_splines().map_err(fail_of)?),
+        ground => ground,
+    };
     Ok((loads, ground))
 }
 

@@ -248,6 +248,9 @@ pub(crate) struct LoadArgs {
     /// Segments that the ground reactions act on, in the order of the file's columns; guessed by name when left out.
     #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", requires = "grf")]
     pub(crate) grf_on: Vec<String>,
+    /// Natural cubic splines between the times of --grf, as OpenSim has them, in place of straight lines. They ring where a foot lands.
+    #[arg(long, requires = "grf")]
+    pub(crate) grf_splines: bool,
     /// The segment that a force plate of the C3D file of --grf acts on: 1=calcn_r, or 2=none for a plate that does not act on the body.
     #[arg(long, value_name = "NUMBER=SEG", requires = "grf")]
     pub(crate) plate: Vec<String>,

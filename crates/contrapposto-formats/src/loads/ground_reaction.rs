@@ -10,91 +10,13 @@ use contrapposto::statics::{FixedIn, Load, LoadKind};
 use nalgebra::{Point3, Vector3};
 
 use super::external_loads::{ExternalForce, ExternalLoads};
+use super::ground_reaction_error::GroundReactionError;
+use super::interpolation::Interpolation;
 use super::text::no_segment;
-use crate::input_error::InputError;
 use crate::motion::{Table, read_table};
 
 /// Time beyond the table's ends that rounding may give, s.
 const SLACK: f64 = 1e-6;
-
-/// The reason for which a table holds no ground reactions of the model.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum GroundReactionError {
-    /// The file is no table.
-    #[error(transparent)]
-    Table(#[from] InputError),
-    /// No column is the force of a plate.
-    #[error(
-        "{table}: no column is named like `ground_force_vx` (with ground_force_px and, if wanted, ground_torque_x)"
-    )]
-    NoPlates {
-        /// Name of the table.
-        table: String,
-    },
-    /// A column that must stand beside another one does not.
-    #[error("{table}: there is `{label}`, but no `{missing}`")]
-    Column {
-        /// Name of the table.
-        table: String,
-        /// The column that is there.
-        label: String,
-        /// The column that is not.
-        missing: String,
-    },
-    /// A column that an ExternalLoads file names is not there.
-    #[error("{table}: there is no column `{missing}`, which the ExternalLoads file names")]
-    Named {
-        /// Name of the table.
-        table: String,
-        /// The column.
-        missing: String,
-    },
-    /// Not as many segments are given as the table has plates.
-    #[error("names {given} segments; {table} has {} ground reactions ({})", plates.len(), plates.join(", "))]
-    Count {
-        /// Name of the table.
-        table: String,
-        /// Number of segments given.
-        given: usize,
-        /// First column of every plate.
-        plates: Vec<String>,
-    },
-    /// A given segment is not in the model.
-    #[error("{0}")]
-    Segment(String),
-    /// The segment of a plate follows neither from what is given nor from the label.
-    #[error("{table}: the segment that `{label}` acts on is not known: name one segment a plate")]
-    Unknown {
-        /// Name of the table.
-        table: String,
-        /// First column of the plate.
-        label: String,
-    },
-    /// The table has no rows.
-    #[error("{table}: holds no rows")]
-    Empty {
-        /// Name of the table.
-        table: String,
-    },
-    /// A time lies outside of the table.
-    #[error(
-        "frame {frame} at {time} s has no ground reaction: {table} goes from {first} s to {last} s; --from {first} --to {last} leaves the \
-         other frames out"
-    )]
-    Outside {
-        /// Name of the table.
-        table: String,
-        /// Number of the frame, counted from 0.
-        frame: usize,
-        /// Time of the row, s.
-        time: f64,
-        /// First time of the table, s.
-        first: f64,
-        /// Last time of the table, s.
-        last: f64,
-    },
-}
 
 /// Ground reactions over time.
 #[derive(Clone, Debug)]
@@ -106,6 +28,7 @@ pub struct GroundReaction {
     guessed: Vec<(String, &'static str)>,
     /// Sentences that say what force plates act on.
     assigned: Vec<String>,
+    interpolation: Interpolation,
 }
 
 /// Columns x, y and z.
@@ -197,7 +120,7 @@ impl GroundReaction {
                 point_in: None,
             });
         }
-        Ok(Self { name: table_name(), table, plates, guessed, assigned: vec![] })
+        Ok(Self { guessed, ..Self::of_table(name, table, plates, vec![]) })
     }
 
     /// Reads a table of the name `name` with the segments and columns that an ExternalLoads file names.
@@ -228,11 +151,23 @@ impl GroundReaction {
             })
         };
         let plates = loads.forces.iter().map(plate).collect::<Result<_, _>>()?;
-        Ok(Self { name: name.to_owned(), table, plates, guessed: vec![], assigned: vec![] })
+        Ok(Self::of_table(name, table, plates, vec![]))
     }
 
     pub(super) fn of_table(name: &str, table: Table, plates: Vec<Plate>, assigned: Vec<String>) -> Self {
-        Self { name: name.to_owned(), table, plates, guessed: vec![], assigned }
+        Self { name: name.to_owned(), table, plates, guessed: vec![], assigned, interpolation: Interpolation::Lines }
+    }
+
+    /// The same with natural cubic splines between the rows, as OpenSim has them: they ring where a foot lands, and differ from straight lines where the
+    /// rows are far apart.
+    ///
+    /// # Errors
+    /// [`GroundReactionError::Spline`] for fewer than four rows, or two of one time.
+    pub fn with_splines(self) -> Result<Self, GroundReactionError> {
+        match Interpolation::splines(&self.table) {
+            Ok(interpolation) => Ok(Self { interpolation, ..self }),
+            Err(why) => Err(GroundReactionError::Spline { table: self.name, why }),
+        }
     }
 
     /// Sentences that say what the force plates of a C3D file act on.
@@ -289,12 +224,7 @@ impl GroundReaction {
     /// Adds the loads at `time` (s), interpolated, in the posture that `kinematics` holds: forces (N) and couples (N m) at the
     /// points of the segments that coincide with the measured points.
     pub fn loads(&self, time: f64, model: &Model, kinematics: &Kinematics, loads: &mut Vec<Load>) {
-        let Table { times, rows, .. } = &self.table;
-        let after = times.partition_point(|t| *t <= time).min(times.len() - 1);
-        let before = after.saturating_sub(1);
-        let span = times[after] - times[before];
-        let share = if span > 0.0 { ((time - times[before]) / span).clamp(0.0, 1.0) } else { 0.0 };
-        let value = |column: usize| rows[before][column] + share * (rows[after][column] - rows[before][column]);
+        let value = self.interpolation.at(&self.table, time);
         let three = |columns: Three| Vector3::from(columns.map(value));
         for plate in &self.plates {
             let segment = plate.segment;

@@ -250,6 +250,12 @@ impl Spline {
         self.knots.iter().zip(&self.pieces).map(|(&x, piece)| (x, piece[0]))
     }
 
+    /// Value.
+    #[must_use]
+    pub fn value(&self, x: f64) -> f64 {
+        self.value_slope_curvature(x)[0]
+    }
+
     /// Whether straight lines join its points.
     #[must_use]
     pub fn is_straight(&self) -> bool {
