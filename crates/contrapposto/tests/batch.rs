@@ -354,6 +354,7 @@ fn relaxed_arms_with_many_loads_have_the_same_bits_in_any_number_of_threads() {
                 locked: &[],
                 most_work: usize::MAX,
                 scattered: contrapposto::equilibria::SCATTERED_STARTS,
+                wanted: contrapposto::equilibria::Wanted::Ways,
                 threads: 1,
             };
             equilibria(&search, Options { local_minima: 0, ..Options::least_effort() })

@@ -106,6 +106,7 @@ fn found() -> &'static [(Waiting, Equilibria); 2] {
                 locked: &[],
                 most_work: usize::MAX,
                 scattered: contrapposto::equilibria::SCATTERED_STARTS,
+                wanted: contrapposto::equilibria::Wanted::Ways,
                 threads: 1,
             };
             let options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };

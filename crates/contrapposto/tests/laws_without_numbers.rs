@@ -141,6 +141,7 @@ fn a_search_is_finite_or_refused_by_name() {
             locked: &[],
             most_work: usize::MAX,
             scattered: contrapposto::equilibria::SCATTERED_STARTS,
+            wanted: contrapposto::equilibria::Wanted::Ways,
             threads: 1,
         };
         match equilibria(&search, Options { max_steps: 60, ..Options::least_effort() }) {

@@ -209,6 +209,7 @@ impl Setting {
                 locked: &[],
                 most_work: usize::MAX,
                 scattered: contrapposto::equilibria::SCATTERED_STARTS,
+                wanted: contrapposto::equilibria::Wanted::Ways,
                 threads: 1,
             };
             format!(

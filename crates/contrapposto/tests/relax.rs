@@ -97,6 +97,7 @@ impl Standing {
             locked: &[],
             most_work: usize::MAX,
             scattered: SCATTERED_STARTS,
+            wanted: contrapposto::equilibria::Wanted::Ways,
             threads: 1,
         }
     }
@@ -450,6 +451,7 @@ fn a_limb_that_hangs_in_the_start_hangs_in_every_answer_and_one_that_is_upright_
             locked: &[],
             most_work: usize::MAX,
             scattered: SCATTERED_STARTS,
+            wanted: contrapposto::equilibria::Wanted::Ways,
             threads: 1,
         };
         let found = equilibria(&search, OPTIONS).unwrap();

@@ -217,6 +217,7 @@ fn least_effort_in_balance(scenario: &PoseScenario, goals: &[PriorityLevel]) -> 
         locked: &scenario.locked,
         most_work: MOST_BALANCE_WORK,
         scattered: contrapposto::equilibria::SCATTERED_STARTS,
+        wanted: contrapposto::equilibria::Wanted::Ways,
         threads: 1,
     };
     let found = equilibria(&search, Options { local_minima: 0, ..Options::least_effort() }).ok()?;

@@ -66,6 +66,7 @@ impl RelaxScenario {
             locked: &self.locked,
             most_work: usize::MAX,
             scattered: SCATTERED_STARTS,
+            wanted: contrapposto::equilibria::Wanted::Ways,
             threads: 1,
         }
     }

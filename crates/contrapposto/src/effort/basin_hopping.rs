@@ -174,6 +174,18 @@ impl BasinHopping {
         Ok(Some((nearest, steps)))
     }
 
+    /// Moves `posture` near its local minimum, or leaves it where it is if constraints are violated there; returns the number of steps.
+    pub(crate) fn near_minimum(
+        &mut self,
+        problem: &EffortProblem<'_>,
+        posture: &mut Posture,
+    ) -> Result<usize, JointTorquesError> {
+        let reduced = ReducedProblem::of(problem, posture)?;
+        let Some((_, steps)) = self.descend_to_nearest(problem, reduced.as_ref(), posture)? else { return Ok(0) };
+        posture.values_mut().copy_from_slice(self.lowest.posture.values());
+        Ok(steps)
+    }
+
     /// Moves `posture` to its own local minimum, and returns whether it did: not if a coordinate would change by more than
     /// `most`, or a constraint is violated there.
     pub(crate) fn descend(

@@ -18,7 +18,7 @@ pub fn described_anew(
 ) -> Result<RelaxedPosture, SearchError> {
     let mut solvers = Solvers::new(search, options)?;
     let slot = solvers.slot;
-    let engine = &mut solvers.engines[Stage::Converged as usize];
+    let engine = solvers.engine(Stage::Converged);
     let SolvedPosture { posture, reason, steps, .. } = &known.relaxed;
     let mut relaxed = engine.describe(posture.clone(), *reason != Reason::StepLimit, *steps)?;
     relaxed.levels.remove(slot);

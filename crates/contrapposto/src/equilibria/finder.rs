@@ -6,10 +6,10 @@ use super::candidate::{Candidate, Worth, keep_worth};
 use super::description::describe;
 use super::hanging_limbs::idle_segments;
 use super::other_places::other_places;
-use super::outcome::Equilibria;
+use super::outcome::{Equilibria, MOST_MINIMA};
 use super::raised_limbs::LimbsWithoutTask;
 use super::scattered::scattered;
-use super::search::{Search, SearchError, Stage};
+use super::search::{Search, SearchError, Stage, Wanted};
 use super::solvers::{Attempt, EVERYTHING, Outcome, Solvers, Start, Steps, Way};
 use super::ways_to_stand::DifferentWays;
 use crate::batch;
@@ -22,9 +22,11 @@ use crate::posture_solver::{EngineError, Options};
 const ROUNDS: usize = 2;
 /// Most postures with a limb held up from which limbs are let hang.
 const HUNG: usize = 5;
+/// Local minima from which lower ones are sought: where all ways to stand are wanted, and where that of least effort is.
+const HOPPED: [usize; 2] = [8, 3];
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to
-/// exploratory and to converged postures.
-const ALLOWED_ERROR: [f64; 2] = [0.02, 1e-5];
+/// postures of each stage.
+const ALLOWED_ERROR: [f64; 4] = [0.02, 0.02, 1e-5, 1e-5];
 
 /// As [`equilibria`](super::equilibria); `watch` is told the number of postures that have been sought so far, each time that another one is.
 ///
@@ -60,6 +62,7 @@ pub(super) struct Finder<'a> {
     steps: Steps,
     /// A start was left out, since the budget was spent.
     cut: bool,
+    minima: Vec<Posture>,
 }
 
 impl<'a> Finder<'a> {
@@ -76,6 +79,7 @@ impl<'a> Finder<'a> {
             watch,
             steps: Steps::default(),
             cut: false,
+            minima: vec![],
         })
     }
 
@@ -83,7 +87,7 @@ impl<'a> Finder<'a> {
     fn most_work(&self, stage: Stage) -> usize {
         match stage {
             Stage::Exploratory => self.search.most_work / 4 * 3,
-            Stage::Converged => self.search.most_work,
+            _ => self.search.most_work,
         }
     }
 
@@ -113,7 +117,7 @@ impl<'a> Finder<'a> {
             places.map(|(tasks, label)| self.exploratory(self.search.start, Way::ToTasks(tasks), label)).collect(),
         );
         let mut explored: Vec<Candidate> = vec![];
-        for _ in 0..ROUNDS {
+        for _ in 0..if self.is_quick() { 1 } else { ROUNDS } {
             let Some(best) = self.best() else { break };
             if explored.iter().any(|known| known.is_same(&best)) {
                 break;
@@ -121,39 +125,73 @@ impl<'a> Finder<'a> {
             self.explore_goals(&best.relaxed.posture)?;
             explored.push(best);
         }
-        self.explore_scattered();
-        self.explore_mirror_images();
+        if !self.is_quick() {
+            self.explore_scattered();
+            self.explore_mirror_images();
+        }
         Ok(())
+    }
+
+    /// Whether postures of an earlier search stand in for exploring.
+    pub(super) fn is_quick(&self) -> bool {
+        !self.search.wanted.known().is_empty()
     }
 
     pub(super) fn exploratory(&self, from: &Posture, way: Way, label: String) -> Start {
         Start { stage: Stage::Exploratory, from: from.clone(), way, labels: vec![label], unless_found: None }
     }
 
-    /// Converges from every different posture that was explored and is worth it, from that of least effort first.
+    /// Descends from every different posture that was explored and is worth it, and from those that are known; then settles in the different
+    /// local minima that are worth it, and seeks lower ones from those of least effort.
     fn converge(&mut self) {
-        let mut candidates = self.selected(Stage::Exploratory);
-        candidates.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
-        keep_worth(&self.found, &mut candidates, Worth::START);
-        let mut explored = std::mem::take(&mut self.found);
-        let starts = std::mem::take(&mut self.starts);
-        let worth = candidates.into_iter().map(|i| {
-            let Candidate { relaxed, starts, .. } = explored[i].clone();
-            Start {
-                stage: Stage::Converged,
-                from: relaxed.posture,
-                way: Way::Nothing,
-                labels: starts,
-                unless_found: None,
-            }
-        });
-        self.solve_all(worth.collect());
+        let starts = self.starts;
+        let explored = self.worth(Stage::Exploratory, Worth::START);
+        let known =
+            self.search.wanted.known().iter().map(|posture| (posture.clone(), vec!["an earlier posture".to_owned()]));
+        let known: Vec<_> = known.collect();
+        let start = |stage, (from, labels): (Posture, Vec<String>)| Start {
+            stage,
+            from,
+            way: Way::Nothing,
+            labels,
+            unless_found: None,
+        };
+        let before = self.begin_stage();
+        self.solve_all(explored.into_iter().chain(known).map(|from| start(Stage::Nearest, from)).collect());
+        let nearest = self.worth(Stage::Nearest, Worth::ANSWER);
+        self.minima = nearest.iter().take(MOST_MINIMA).map(|(posture, _)| posture.clone()).collect();
+        let near = self.begin_stage();
+        let (hopped, all) = match self.search.wanted {
+            Wanted::Ways => (HOPPED[0], nearest.len()),
+            Wanted::Least(_) => (HOPPED[1], HOPPED[1]),
+        };
+        let mut others: Vec<_> = nearest.into_iter().take(all).collect();
+        let least: Vec<_> = others.drain(..hopped.min(others.len())).collect();
+        self.solve_all(least.into_iter().map(|from| start(Stage::Converged, from)).collect());
+        self.solve_all(others.into_iter().map(|from| start(Stage::Settled, from)).collect());
         self.hang();
-        self.mirror_best();
+        if matches!(self.search.wanted, Wanted::Ways) {
+            self.mirror_best();
+        }
         if self.found.is_empty() {
-            self.found.append(&mut explored);
+            self.found = if near.is_empty() { before } else { near };
         }
         self.starts = starts;
+    }
+
+    /// Postures and labels of a stage that are worth going on from, that of least effort first.
+    fn worth(&self, stage: Stage, worth: Worth) -> Vec<(Posture, Vec<String>)> {
+        let mut candidates = self.selected(stage);
+        candidates.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
+        keep_worth(&self.found, &mut candidates, worth);
+        let found = candidates.into_iter().map(|i| &self.found[i]);
+        found.map(|found| (found.relaxed.posture.clone(), found.starts.clone())).collect()
+    }
+
+    /// Begins a stage with nothing found; returns what was found before.
+    fn begin_stage(&mut self) -> Vec<Candidate> {
+        self.starts = 0;
+        std::mem::take(&mut self.found)
     }
 
     /// Solves from starts of one stage, and takes the attempts in their order. With several threads they are solved beforehand: those that
@@ -240,7 +278,8 @@ impl<'a> Finder<'a> {
     fn hang(&mut self) {
         let mut known = self.selected(Stage::Converged);
         known.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
-        let raised = known.iter().skip(1).filter(|&&i| self.found[i].raised_limbs > 0).take(HUNG);
+        let hung = if matches!(self.search.wanted, Wanted::Ways) { HUNG } else { 0 };
+        let raised = known.iter().skip(1).filter(|&&i| self.found[i].raised_limbs > 0).take(hung);
         let start = |&i: &usize| Start {
             stage: Stage::Converged,
             from: self.found[i].relaxed.posture.clone(),
@@ -298,7 +337,7 @@ impl<'a> Finder<'a> {
         keep_worth(&self.found, &mut selected, Worth::ANSWER);
         let raised = all - selected.len();
         let (mut answers, engine) =
-            (DifferentWays::new(idle_segments(self.search)), &mut self.solvers.engines[Stage::Converged as usize]);
+            (DifferentWays::new(idle_segments(self.search)), self.solvers.engine(Stage::Converged));
         for i in selected {
             let Candidate { relaxed, starts, .. } = self.found[i].clone();
             let posture = describe(self.search, engine, relaxed, starts)?;
@@ -307,6 +346,7 @@ impl<'a> Finder<'a> {
         let DifferentWays { postures, alike, .. } = answers;
         let (starts, fell, steps, work, cut) =
             (self.starts, self.fell.len(), self.steps.steps, self.steps.work(), self.cut);
-        Ok(Equilibria { postures, starts, fell, yielded, alike: alike + raised, steps, work, cut })
+        let minima = self.minima;
+        Ok(Equilibria { postures, minima, starts, fell, yielded, alike: alike + raised, steps, work, cut })
     }
 }

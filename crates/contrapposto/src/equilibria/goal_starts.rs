@@ -43,12 +43,13 @@ impl Finder<'_> {
     /// coordinates with the greatest relative loads alone.
     pub(super) fn explore_goals(&mut self, posture: &Posture) -> Result<(), SearchError> {
         let model = self.search.model;
-        self.solvers.engines[Stage::Exploratory as usize].restart();
+        self.solvers.engine(Stage::Exploratory).restart();
         let mut asked: Vec<(f64, usize, [Option<Goal>; 2])> = vec![];
         for i in 0..model.coordinates().len() {
             let goals = self.goals_of(posture, i)?;
             if goals.iter().any(Option::is_some) {
-                let load = work_of(model, &self.solvers.engines[0], i).map_or(0.0, |work| work.relative_load());
+                let load =
+                    work_of(model, self.solvers.engine(Stage::Exploratory), i).map_or(0.0, |work| work.relative_load());
                 asked.push((load, i, goals));
             }
         }
@@ -58,6 +59,9 @@ impl Finder<'_> {
             if !all.is_empty() {
                 starts.push(self.at_goals(posture, &all, format!("all {word} goals")));
             }
+        }
+        if self.is_quick() {
+            asked.clear();
         }
         // A stable sort: of equals the first of the model.
         asked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -86,8 +90,9 @@ impl Finder<'_> {
         if self.search.locked.contains(&rate) || coordinate.locked || self.search.model.is_dependent(i) {
             return Ok(NONE);
         }
-        let engine = &mut self.solvers.engines[Stage::Exploratory as usize];
-        let Some(external_slope) = engine.slope_along(posture, rate, self.solvers.slot)? else { return Ok(NONE) };
+        let slot = self.solvers.slot;
+        let engine = self.solvers.engine(Stage::Exploratory);
+        let Some(external_slope) = engine.slope_along(posture, rate, slot)? else { return Ok(NONE) };
         let (model, body) = (self.search.model, engine.torques());
         let passive_torque = body.passive_torque();
         let Some(curve) = passive_torque.curve_about_axis(model, body.kinematics(), i, coordinate.range) else {

@@ -28,7 +28,7 @@ impl Finder<'_> {
         let mut best = self.selected(Stage::Converged);
         best.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
         let images = self.images(best.into_iter().take(MIRRORED).map(|i| &self.found[i]));
-        self.solve_all(images.iter().map(|image| from_image(Stage::Converged, image)).collect());
+        self.solve_all(images.iter().map(|image| from_image(Stage::Settled, image)).collect());
     }
 
     /// The mirror images of postures, where the body has them.

@@ -2,7 +2,11 @@
 
 use super::stability::Stability;
 use crate::model::Side;
+use crate::posture::Posture;
 use crate::posture_solver::SolvedPosture;
+
+/// Most local minima that a search returns for later searches. Assumed.
+pub(super) const MOST_MINIMA: usize = 12;
 
 /// A muscle group at work.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +91,8 @@ impl RelaxedPosture {
 pub struct Equilibria {
     /// Different postures, that of least effort first.
     pub postures: Vec<RelaxedPosture>,
+    /// Different local minima near explored postures, that of least effort first, [`MOST_MINIMA`] at most.
+    pub minima: Vec<Posture>,
     /// Number of starts.
     pub starts: usize,
     /// Starts from which the body fell.

@@ -30,16 +30,43 @@ pub struct Search<'a> {
     /// Number of starts that are scattered over the ranges of the joints ([`SCATTERED_STARTS`](super::SCATTERED_STARTS) finds what random starts
     /// of another method find); 0 where the posture is known to be near, as after a rest.
     pub scattered: usize,
+    /// The postures that the caller needs.
+    pub wanted: Wanted<'a>,
     /// Threads that solve from the starts; the answer does not depend on their number. One is right where the caller has its own.
     pub threads: usize,
+}
+
+/// The postures that a search is for.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum Wanted<'a> {
+    /// All different ways to stand.
+    #[default]
+    Ways,
+    /// The posture of least effort. Where local minima of an earlier search of the same body are given, they are the starts, besides all goals of
+    /// each strategy together.
+    Least(&'a [Posture]),
+}
+
+impl Wanted<'_> {
+    /// Postures of earlier searches.
+    pub(super) fn known(&self) -> &[Posture] {
+        match self {
+            Self::Ways => &[],
+            Self::Least(known) => known,
+        }
+    }
 }
 
 /// Stage of a search: its index in the engines and in the allowed errors.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
     Exploratory = 0,
-    /// The lowest of the local minima nearby, by basin hopping.
-    Converged = 1,
+    /// Near the local minimum of an explored posture.
+    Nearest = 1,
+    /// At the local minimum.
+    Settled = 2,
+    /// At the lowest of the local minima nearby, by basin hopping.
+    Converged = 3,
 }
 
 /// The reason for which no posture was found.

@@ -16,8 +16,8 @@ use crate::tasks::{Effort, PriorityLevel, Task};
 const EXPLORATORY_STEPS: usize = 20;
 /// Steps of an approach to the tasks.
 const APPROACH_STEPS: usize = 40;
-/// Missing contact force and moment that are allowed to exploratory and to converged postures, body weights (times 1 m).
-const ALLOWED_MISSING: [f64; 2] = [1e-3, 1e-8];
+/// Missing contact force and moment that are allowed to postures of each stage, body weights (times 1 m).
+const ALLOWED_MISSING: [f64; 4] = [1e-3, 1e-3, 1e-8, 1e-8];
 /// Change of every rate below which the approach to the tasks ends, rad or m.
 const APPROACH_TOLERANCE: f64 = 1e-6;
 /// Distance of the ends of limbs from hanging up to which an approach is not tried in another way, m.
@@ -101,8 +101,8 @@ impl Attempt {
 #[derive(Clone, Debug)]
 pub(super) struct Solvers<'a> {
     search: &'a Search<'a>,
-    /// For exploratory and for converging solves.
-    pub(super) engines: [Engine<'a>; 2],
+    /// For exploratory solves, for settling and for converging.
+    engines: [Engine<'a>; 3],
     /// Without effort.
     approach: Engine<'a>,
     /// Index of the level of goal angles among the engines' levels.
@@ -130,10 +130,20 @@ impl<'a> Solvers<'a> {
         };
         let exploratory = EXPLORATORY_STEPS.min(options.max_steps);
         let (most, minima) = (options.max_steps, options.local_minima);
-        let mut engines = [engine(exploratory, 0, &levels)?, engine(most, minima, &levels)?];
+        let mut engines =
+            [engine(exploratory, 0, &levels)?, engine(most, minima.min(1), &levels)?, engine(most, minima, &levels)?];
         engines[0].set_hessian_model(HessianModel::Partial);
         let approach = engine(APPROACH_STEPS, 0, &levels[..=slot])?;
         Ok(Self { search, engines, approach, slot })
+    }
+
+    /// The engine of a stage.
+    pub(super) fn engine(&mut self, stage: Stage) -> &mut Engine<'a> {
+        &mut self.engines[match stage {
+            Stage::Exploratory => 0,
+            Stage::Nearest | Stage::Settled => 1,
+            Stage::Converged => 2,
+        }]
     }
 
     /// Solves from a start.
@@ -149,10 +159,11 @@ impl<'a> Solvers<'a> {
     }
 
     fn at_goals(&mut self, spaces: &[HalfSpace], start: &Start, before: &mut Steps) -> Option<Posture> {
-        let engine = &mut self.engines[start.stage as usize];
-        engine.levels_mut()[self.slot].half_spaces = spaces.to_vec();
+        let slot = self.slot;
+        let engine = self.engine(start.stage);
+        engine.levels_mut()[slot].half_spaces = spaces.to_vec();
         let under = engine.solve_watched(&start.from, |step, _| before.changes += step.work() - 1);
-        engine.levels_mut()[self.slot].half_spaces.clear();
+        engine.levels_mut()[slot].half_spaces.clear();
         let under = under.ok()?;
         before.steps += under.steps;
         Some(under.posture)
@@ -160,9 +171,14 @@ impl<'a> Solvers<'a> {
 
     /// Solves from a posture with the engine of a stage.
     fn solve(&mut self, stage: Stage, from: &Posture, limbs: &LimbsWithoutTask) -> Solved {
-        let (search, engine) = (self.search, &mut self.engines[stage as usize]);
+        let (search, slot) = (self.search, self.slot);
+        let engine = self.engine(stage);
         let mut steps = Steps::default();
-        let mut relaxed = match engine.solve_watched(from, |step, _| steps.changes += step.work() - 1) {
+        let solved = match stage {
+            Stage::Nearest => engine.near_minimum(from),
+            _ => engine.solve_watched(from, |step, _| steps.changes += step.work() - 1),
+        };
+        let mut relaxed = match solved {
             Ok(relaxed) => relaxed,
             Err(error) => return Solved { steps, outcome: Outcome::Refused(error) },
         };
@@ -173,7 +189,7 @@ impl<'a> Solvers<'a> {
         if let Some(missing) = missing.filter(|missing| missing.force.max(missing.moment) > allowed) {
             return Solved { steps, outcome: Outcome::Fell(missing) };
         }
-        relaxed.levels.remove(self.slot);
+        relaxed.levels.remove(slot);
         let supports = search.supports.iter().enumerate();
         let candidate = Candidate {
             excess: supports.map(|(i, support)| (contact.share(i) - support.share_max).max(0.0)).sum(),

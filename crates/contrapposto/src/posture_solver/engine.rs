@@ -376,6 +376,25 @@ impl<'a> Engine<'a> {
         Ok(descended)
     }
 
+    /// The posture near the local minimum of effort that is nearest to `start`, by a descent that ends where little is to be gained; `start`
+    /// itself where the descent leaves supports or levels.
+    ///
+    /// # Errors
+    /// As [`Engine::step`].
+    pub(crate) fn near_minimum(&mut self, start: &Posture) -> Result<SolvedPosture, EngineError> {
+        self.restart();
+        self.evaluate(start)?;
+        let (mut posture, mut steps) = (start.clone(), 0);
+        if let Some(problem) = self.settings.effort_problem(&self.iterate.contact, Rates::Free)
+            && self.settings.can_descend()
+        {
+            steps = self.basin_hopping.near_minimum(&problem, &mut posture)?;
+            self.settings.keep_ranges(&mut posture);
+        }
+        self.evaluate(&posture)?;
+        self.describe(posture, false, steps)
+    }
+
     /// Slope of the external torque of `rate`, N m/rad, along the least motion that moves it while supports stay where
     /// they are and the first `above` levels keep their values; contact forces are solved anew along it. `None` where
     /// the rate cannot move so.

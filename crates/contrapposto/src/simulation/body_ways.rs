@@ -7,7 +7,7 @@ use super::body_motion::{BodyMotion, engine, is_effort};
 use super::easiest::{Budget, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference};
 use super::path::{Path, Planner};
 use crate::contact::{Balance, Support};
-use crate::equilibria::SCATTERED_STARTS;
+use crate::equilibria::{SCATTERED_STARTS, Wanted};
 use crate::joint_torques::JointTorquesError;
 use crate::kinematics::Kinematics;
 use crate::posture::Posture;
@@ -48,9 +48,9 @@ impl BodyMotion<'_> {
         // A task that is missed may need legs that stand in another way: with all joints free a search takes longer.
         let work = SEARCH_BUDGET_OF_STEP * if missed { 2 } else { 1 };
         let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: !missed };
-        let Searched { found, work, cut } = self.easiest(&posture, budget)?;
+        let Searched { found, minima, work, cut } = self.easiest(&posture, &[], budget)?;
         self.forget();
-        Ok(Searched { found: found.unwrap_or(posture), work, cut })
+        Ok(Searched { found: found.unwrap_or(posture), minima, work, cut })
     }
 
     /// Errors of the levels above effort that ask for something, in the posture of the last update.
@@ -82,10 +82,12 @@ impl BodyMotion<'_> {
         Ok(engine.solve(&scenario.start)?.posture)
     }
 
-    /// A posture of less effort that the body can take without moving a support, if `budget` shows one worth a motion.
+    /// A posture of less effort that the body can take without moving a support, if `budget` shows one worth a motion; `known` are local
+    /// minima of earlier searches.
     pub(super) fn easiest(
         &mut self,
         posture: &Posture,
+        known: &[Posture],
         budget: Budget,
     ) -> Result<Searched<Option<Posture>>, ScenarioError> {
         if !self.engine.levels().iter().any(is_effort) {
@@ -96,7 +98,7 @@ impl BodyMotion<'_> {
         let levels: Vec<PriorityLevel> = self.levels().cloned().collect();
         let errors = self.errors_above_effort();
         let loads = self.engine.loads();
-        let now = Now { model: &self.model, posture, levels: &levels, loads, effort };
+        let now = Now { model: &self.model, posture, levels: &levels, loads, effort, wanted: Wanted::Least(known) };
         // A search that finds nothing leaves the body as it is.
         Ok(easiest(self.scenario, now, &errors, &self.supports, budget).unwrap_or_default())
     }

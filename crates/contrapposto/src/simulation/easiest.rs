@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Support, rates_that_move};
-use crate::equilibria::{RelaxedPosture, Search, SearchError, equilibria};
+use crate::equilibria::{RelaxedPosture, Search, SearchError, Wanted, equilibria};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::posture_solver::{LevelError, Options};
@@ -65,6 +65,8 @@ pub(super) struct Now<'a> {
     pub(super) levels: &'a [PriorityLevel],
     pub(super) loads: &'a [Load],
     pub(super) effort: f64,
+    /// The postures that the search is for.
+    pub(super) wanted: Wanted<'a>,
 }
 
 /// Amount of work that a search may do.
@@ -82,6 +84,8 @@ pub(super) struct Budget {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Searched<T> {
     pub(super) found: T,
+    /// Local minima that it passed, for later searches of the same body.
+    pub(super) minima: Vec<Posture>,
     pub(super) work: usize,
     /// The search ended at its budget.
     pub(super) cut: bool,
@@ -101,14 +105,14 @@ pub(super) fn easiest(
     }
     scenario.locked_rates().for_each(|rate| locked[rate] = true);
     let locked: Vec<usize> = (0..locked.len()).filter(|&rate| locked[rate]).collect();
-    let Searched { found, work, cut } = search(scenario, now, supports, &locked, budget)?;
+    let Searched { found, minima, work, cut } = search(scenario, now, supports, &locked, budget)?;
     let better = |best: &RelaxedPosture| {
         let farther = first_difference(&best.relaxed.levels, errors);
         let easier = best.relaxed.effort < WORTH_A_MOTION * now.effort;
         best.relaxed.slip.length() <= MOST_SLIP && (farther < -WORTH_NEARING || easier && farther <= 0.0)
     };
     let better = found.into_iter().next().filter(better);
-    Ok(Searched { found: better.map(|best| best.relaxed.posture), work, cut })
+    Ok(Searched { found: better.map(|best| best.relaxed.posture), minima, work, cut })
 }
 
 /// Difference of the errors of the first task that differ by more than [`UNREACHED`], greater than 0 where it is farther; 0 where none does.
@@ -137,9 +141,10 @@ pub(super) fn search(
         locked,
         most_work: budget.work,
         scattered: budget.scattered,
+        wanted: now.wanted,
         threads: scenario.run.threads,
     };
     let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_SOLVE_STEPS, ..Options::least_effort() };
     let found = equilibria(&search, options)?;
-    Ok(Searched { found: found.postures, work: found.work, cut: found.cut })
+    Ok(Searched { found: found.postures, minima: found.minima, work: found.work, cut: found.cut })
 }

@@ -13,7 +13,7 @@ use super::easiest::{Budget, Now, Searched, search};
 use super::path::Path;
 use super::sample::FootStep;
 use crate::contact::{Place, Support};
-use crate::equilibria::RelaxedPosture;
+use crate::equilibria::{RelaxedPosture, Wanted};
 use crate::kinematics::Kinematics;
 use crate::model::Side;
 use crate::posture::Posture;
@@ -58,7 +58,8 @@ pub(super) fn plan_step(
         let mut supports = body.supports().to_vec();
         supports[i].place = scenario.supports[i].place.clone();
         let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
-        let now = Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort };
+        let now =
+            Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort, wanted: Wanted::Ways };
         let locked: Vec<usize> = scenario.locked_rates().collect();
         let share = Budget { scattered: 0, work: left / (free.len() - k), carriers_stay: true };
         let Ok(searched) = search(scenario, now, &supports, &locked, share) else { continue };
@@ -78,11 +79,11 @@ pub(super) fn plan_step(
             let (coordinate, side) = (tired.coordinate, tired.side);
             let (place, effort) = ((before.into(), after.into()), (effort, candidate.relaxed.effort));
             let step = FootStep { support: i, coordinate, side, time: (0.0, 0.0), place, effort };
-            return Ok(Searched { found: Some(PlannedStep { path, step }), work: budget - left, cut });
+            return Ok(Searched { found: Some(PlannedStep { path, step }), minima: vec![], work: budget - left, cut });
         }
     }
     cut |= left == 0;
-    Ok(Searched { found: None, work: budget - left, cut })
+    Ok(Searched { found: None, minima: vec![], work: budget - left, cut })
 }
 
 /// Whether the tired joint is nearer to its goal in a posture, and its group works clearly less.

@@ -53,6 +53,8 @@ pub(super) struct State {
     pub(super) searched_here: bool,
     /// The posture in which the last search at rest found nothing easier, since tasks, loads and supports are as they are.
     pub(super) eased: Option<Eased>,
+    /// Local minima that an earlier search passed, since loads, tasks and supports are as they are.
+    pub(super) minima: Vec<Posture>,
     /// State of the muscles of a run in which they tire one by one.
     pub(super) muscles: Option<MuscleState>,
 }
@@ -129,6 +131,7 @@ impl State {
             search_cut: false,
             searched_here: true,
             eased: None,
+            minima: vec![],
             muscles: None,
         }
     }

@@ -51,7 +51,8 @@ impl<'a> Simulation<'a> {
         };
         let mut simulation = Self::with(scenario, State::new(scenario.start.clone(), strategies))?;
         if let Some(body) = simulation.motion.body_mut() {
-            let Searched { found, work, cut } = body.start()?;
+            let Searched { found, minima, work, cut } = body.start()?;
+            simulation.state.minima = minima;
             let asked = vec![false; simulation.state.requests.len()];
             simulation.state.eased = Some(Eased { posture: found.clone(), asked });
             (simulation.state.posture, simulation.state.searched, simulation.state.search_cut) = (found, work, cut);
@@ -79,7 +80,8 @@ impl<'a> Simulation<'a> {
         let n = scenario.model.coordinates().len();
         let eased = state.eased.as_ref().map(|eased| &eased.posture);
         let postures = [Some(&state.posture), state.placed_at.as_ref(), eased];
-        let fit = postures.iter().flatten().all(|posture| posture.check(&scenario.model).is_ok());
+        let fit =
+            postures.into_iter().flatten().chain(&state.minima).all(|posture| posture.check(&scenario.model).is_ok());
         if !fit || !state.fits(n, scenario.supports.len(), scenario.events.len()) {
             return Err(ScenarioError::Snapshot);
         }

@@ -29,6 +29,7 @@ impl Simulation<'_> {
             body.place_again(&self.state.posture)?;
             self.state.placed_at = Some(self.state.posture.clone());
             self.state.eased = None;
+            self.state.minima.clear();
         }
         if is_over {
             body.restart_convergence();
@@ -49,6 +50,7 @@ impl Simulation<'_> {
     pub(super) fn end_path_at_once(&mut self) -> Result<(), ScenarioError> {
         self.state.searched_here = false;
         self.state.eased = None;
+        self.state.minima.clear();
         self.state.step_tried.fill(false);
         let Some(path) = &mut self.state.path else { return Ok(()) };
         if path.has_step() {
@@ -82,7 +84,7 @@ impl Simulation<'_> {
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         self.state.step_tried[i] = true;
         let tired = Tired { coordinate: i, side, load: self.record.load[i], toward };
-        let Searched { found, work, cut } = plan_step(body, &self.state.posture, tired, budget)?;
+        let Searched { found, work, cut, .. } = plan_step(body, &self.state.posture, tired, budget)?;
         self.count_search(work, cut);
         if let Some(PlannedStep { path, mut step }) = found {
             step.time.0 = self.state.steps as f64 * self.scenario.run.step;
@@ -109,8 +111,12 @@ impl Simulation<'_> {
         let Some(mut budget) = self.search_budget() else { return Ok(()) };
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         self.state.searched_here = true;
-        let Searched { found, work, cut } =
-            body.easiest(&self.state.posture, Budget { scattered: 0, work: budget, carriers_stay: true })?;
+        let budget_of_search = Budget { scattered: 0, work: budget, carriers_stay: true };
+        let Searched { found, minima, work, cut } =
+            body.easiest(&self.state.posture, &self.state.minima, budget_of_search)?;
+        if self.state.minima.is_empty() {
+            self.state.minima = minima;
+        }
         let all = budget;
         budget = budget.saturating_sub(work);
         self.state.eased = found.is_none().then_some(here);

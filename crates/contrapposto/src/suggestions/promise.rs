@@ -31,6 +31,7 @@ pub fn by_promise(scenario: &Scenario, summary: &Summary, changes: Vec<Change>) 
             locked: &locked,
             most_work: usize::MAX,
             scattered: crate::equilibria::SCATTERED_STARTS,
+            wanted: crate::equilibria::Wanted::Ways,
             threads: 1,
         },
         changes,
