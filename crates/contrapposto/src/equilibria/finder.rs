@@ -22,8 +22,9 @@ use crate::posture_solver::{EngineError, Options};
 const ROUNDS: usize = 2;
 /// Most postures with a limb held up from which limbs are let hang.
 const HUNG: usize = 5;
-/// Local minima from which lower ones are sought: where all ways to stand are wanted, and where that of least effort is.
-const HOPPED: [usize; 2] = [8, 3];
+/// Local minima of least effort from which lower ones are sought where all ways to stand are wanted, and where only the least is.
+const HOPPED_OF_ALL: usize = 8;
+const HOPPED_TO_LEAST: usize = 5;
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to
 /// postures of each stage.
 const ALLOWED_ERROR: [f64; 4] = [0.02, 0.02, 1e-5, 1e-5];
@@ -117,7 +118,7 @@ impl<'a> Finder<'a> {
             places.map(|(tasks, label)| self.exploratory(self.search.start, Way::ToTasks(tasks), label)).collect(),
         );
         let mut explored: Vec<Candidate> = vec![];
-        for _ in 0..if self.is_quick() { 1 } else { ROUNDS } {
+        for _ in 0..if self.is_told() { 1 } else { ROUNDS } {
             let Some(best) = self.best() else { break };
             if explored.iter().any(|known| known.is_same(&best)) {
                 break;
@@ -125,7 +126,7 @@ impl<'a> Finder<'a> {
             self.explore_goals(&best.relaxed.posture)?;
             explored.push(best);
         }
-        if !self.is_quick() {
+        if !self.is_told() {
             self.explore_scattered();
             self.explore_mirror_images();
         }
@@ -133,7 +134,7 @@ impl<'a> Finder<'a> {
     }
 
     /// Whether postures of an earlier search stand in for exploring.
-    pub(super) fn is_quick(&self) -> bool {
+    pub(super) fn is_told(&self) -> bool {
         !self.search.wanted.known().is_empty()
     }
 
@@ -141,42 +142,42 @@ impl<'a> Finder<'a> {
         Start { stage: Stage::Exploratory, from: from.clone(), way, labels: vec![label], unless_found: None }
     }
 
-    /// Descends from every different posture that was explored and is worth it, and from those that are known; then settles in the different
-    /// local minima that are worth it, and seeks lower ones from those of least effort.
+    /// Descends from every different posture that was explored and is worth it, and from those that are known; seeks lower local minima from
+    /// the different ones of least effort, and settles in the others where all ways to stand are wanted.
     fn converge(&mut self) {
         let starts = self.starts;
-        let explored = self.worth(Stage::Exploratory, Worth::START);
-        let known =
-            self.search.wanted.known().iter().map(|posture| (posture.clone(), vec!["an earlier posture".to_owned()]));
-        let known: Vec<_> = known.collect();
-        let start = |stage, (from, labels): (Posture, Vec<String>)| Start {
-            stage,
-            from,
-            way: Way::Nothing,
-            labels,
-            unless_found: None,
-        };
-        let before = self.begin_stage();
-        self.solve_all(explored.into_iter().chain(known).map(|from| start(Stage::Nearest, from)).collect());
-        let nearest = self.worth(Stage::Nearest, Worth::ANSWER);
-        self.minima = nearest.iter().take(MOST_MINIMA).map(|(posture, _)| posture.clone()).collect();
+        let mut explored = self.worth(Stage::Exploratory, Worth::START);
+        let known = self.search.wanted.known().iter();
+        explored.extend(known.map(|posture| (posture.clone(), vec!["an earlier posture".to_owned()])));
+        let mut before = self.begin_stage();
+        self.solve_straight(Stage::Nearest, explored);
+        let mut least = self.worth(Stage::Nearest, Worth::ANSWER);
+        self.minima = least.iter().take(MOST_MINIMA).map(|(posture, _)| posture.clone()).collect();
         let near = self.begin_stage();
-        let (hopped, all) = match self.search.wanted {
-            Wanted::Ways => (HOPPED[0], nearest.len()),
-            Wanted::Least(_) => (HOPPED[1], HOPPED[1]),
-        };
-        let mut others: Vec<_> = nearest.into_iter().take(all).collect();
-        let least: Vec<_> = others.drain(..hopped.min(others.len())).collect();
-        self.solve_all(least.into_iter().map(|from| start(Stage::Converged, from)).collect());
-        self.solve_all(others.into_iter().map(|from| start(Stage::Settled, from)).collect());
-        self.hang();
-        if matches!(self.search.wanted, Wanted::Ways) {
+        if !near.is_empty() {
+            before = near;
+        }
+        let all_ways = matches!(self.search.wanted, Wanted::Ways);
+        let hopped = if all_ways { HOPPED_OF_ALL } else { HOPPED_TO_LEAST };
+        let others = least.split_off(hopped.min(least.len()));
+        self.solve_straight(Stage::Converged, least);
+        if all_ways {
+            self.solve_straight(Stage::Settled, others);
+        }
+        self.hang(if all_ways { HUNG } else { 0 });
+        if all_ways {
             self.mirror_best();
         }
         if self.found.is_empty() {
-            self.found = if near.is_empty() { before } else { near };
+            self.found = before;
         }
         self.starts = starts;
+    }
+
+    /// Solves in a stage from postures as they are.
+    fn solve_straight(&mut self, stage: Stage, from: Vec<(Posture, Vec<String>)>) {
+        let start = |(from, labels)| Start { stage, from, way: Way::Nothing, labels, unless_found: None };
+        self.solve_all(from.into_iter().map(start).collect());
     }
 
     /// Postures and labels of a stage that are worth going on from, that of least effort first.
@@ -273,13 +274,12 @@ impl<'a> Finder<'a> {
         self.solve_all((0..count).map(start).collect());
     }
 
-    /// Converges with hanging limbs from the first posture, and from the first of those in which a limb is held up: exploratory steps would leave
+    /// Converges with hanging limbs from the first posture, and from the first `most` of those in which a limb is held up: exploratory steps would leave
     /// limbs that hang.
-    fn hang(&mut self) {
+    fn hang(&mut self, most: usize) {
         let mut known = self.selected(Stage::Converged);
         known.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
-        let hung = if matches!(self.search.wanted, Wanted::Ways) { HUNG } else { 0 };
-        let raised = known.iter().skip(1).filter(|&&i| self.found[i].raised_limbs > 0).take(hung);
+        let raised = known.iter().skip(1).filter(|&&i| self.found[i].raised_limbs > 0).take(most);
         let start = |&i: &usize| Start {
             stage: Stage::Converged,
             from: self.found[i].relaxed.posture.clone(),

@@ -60,7 +60,7 @@ impl Finder<'_> {
                 starts.push(self.at_goals(posture, &all, format!("all {word} goals")));
             }
         }
-        if self.is_quick() {
+        if self.is_told() {
             asked.clear();
         }
         // A stable sort: of equals the first of the model.

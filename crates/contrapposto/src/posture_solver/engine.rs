@@ -17,11 +17,11 @@ use super::merit_rule::MeritRule;
 use super::options::{Options, Reason, Step};
 use super::priority_rule::PriorityRule;
 use super::report::{LevelError, SolvedPosture};
-use super::settings::{Rates, Settings};
+use super::settings::Settings;
 use super::slope::SlopeAlongMotion;
 use super::step_rule::StepRule;
 use super::tolerances::{OTHER_STARTS, STEPS_BEFORE_DESCENT};
-use crate::contact::{Balance, ContactForces, Slip, Support};
+use crate::contact::{ContactForces, Slip, Support};
 use crate::effort::basin_hopping::BasinHopping;
 use crate::effort::hessian::HessianModel;
 use crate::joint_torques::JointTorques;
@@ -34,15 +34,15 @@ use hierarchical_least_squares::Solver;
 /// Brings a body toward priority levels. Nothing is allocated after the first step.
 #[derive(Clone, Debug)]
 pub struct Engine<'a> {
-    settings: Settings<'a>,
-    iterate: Iterate,
+    pub(super) settings: Settings<'a>,
+    pub(super) iterate: Iterate,
     linearisation: Linearisation,
     solver: Solver,
     rule: StepRule,
     /// The posture in which the last step began.
     last: Posture,
     slope: SlopeAlongMotion,
-    basin_hopping: BasinHopping,
+    pub(super) basin_hopping: BasinHopping,
 }
 
 impl<'a> Engine<'a> {
@@ -341,58 +341,6 @@ impl<'a> Engine<'a> {
         let effort = self.settings.effort_level.map_or(0.0, |level| levels[level].effort());
         let (slip, balance) = (self.slip(), self.iterate.contact.balance());
         Ok(SolvedPosture { posture, levels, effort, slip, balance, reason, steps })
-    }
-
-    /// Moves `posture` to the lowest of `count` local minima; returns whether nothing is left for steps to do, and the number
-    /// of steps that it took.
-    fn compare_local_minima(&mut self, posture: &mut Posture, count: usize) -> Result<(bool, usize), EngineError> {
-        if count == 0 || !self.settings.can_descend() {
-            return Ok((false, 0));
-        }
-        self.evaluate(posture)?;
-        let Some(problem) = self.settings.effort_problem(&self.iterate.contact, Rates::Free) else {
-            return Ok((false, 0));
-        };
-        let Some(minimum) = self.basin_hopping.minimise(&problem, posture, count)? else { return Ok((false, 0)) };
-        self.evaluate(posture)?;
-        let held = self.iterate.contact.balance() == Balance::Held;
-        Ok((minimum.converged && held && self.settings.effort_is_last(), minimum.steps))
-    }
-
-    /// Moves `posture` to the nearest local minimum of effort under the supports and the levels above effort, and
-    /// returns whether it did: not if that is farther away than the largest step, or if levels below effort would be
-    /// passed over.
-    ///
-    /// # Errors
-    /// [`EngineError::Body`] when the posture does not fit the model.
-    pub(crate) fn descend(&mut self, posture: &mut Posture) -> Result<bool, EngineError> {
-        if !self.settings.effort_is_last() || !self.settings.can_descend() {
-            return Ok(false);
-        }
-        self.evaluate(posture)?;
-        let Some(problem) = self.settings.effort_problem(&self.iterate.contact, Rates::Free) else { return Ok(false) };
-        let descended = self.basin_hopping.descend(&problem, posture, self.settings.options.max_step)?;
-        self.settings.keep_ranges(posture);
-        Ok(descended)
-    }
-
-    /// The posture near the local minimum of effort that is nearest to `start`, by a descent that ends where little is to be gained; `start`
-    /// itself where the descent leaves supports or levels.
-    ///
-    /// # Errors
-    /// As [`Engine::step`].
-    pub(crate) fn near_minimum(&mut self, start: &Posture) -> Result<SolvedPosture, EngineError> {
-        self.restart();
-        self.evaluate(start)?;
-        let (mut posture, mut steps) = (start.clone(), 0);
-        if let Some(problem) = self.settings.effort_problem(&self.iterate.contact, Rates::Free)
-            && self.settings.can_descend()
-        {
-            steps = self.basin_hopping.near_minimum(&problem, &mut posture)?;
-            self.settings.keep_ranges(&mut posture);
-        }
-        self.evaluate(&posture)?;
-        self.describe(posture, false, steps)
     }
 
     /// Slope of the external torque of `rate`, N m/rad, along the least motion that moves it while supports stay where

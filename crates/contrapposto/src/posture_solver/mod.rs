@@ -16,6 +16,7 @@
 //! | `newton_level`, `multiplier_estimate` | a level with its second derivative |
 //! | `step_rule`, `priority_rule`, `merit_rule` | the two rules by which steps are completed and judged |
 //! | `engine` | the loop |
+//! | `local_minima` | descents to local minima of effort |
 //! | `slope` | how a torque changes along the motion that supports and tasks allow |
 //! | `tolerances` | every tolerance, with its unit |
 
@@ -23,6 +24,7 @@ mod engine;
 mod error;
 mod iterate;
 mod linearisation;
+mod local_minima;
 mod merit_rule;
 mod multiplier_estimate;
 mod newton_level;
