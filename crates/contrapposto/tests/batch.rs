@@ -6,7 +6,7 @@
 mod trees;
 
 use contrapposto::batch::{self, BatchError, Statics, Table, Wanted};
-use contrapposto::equilibria::{Search, Wanted, equilibria};
+use contrapposto::equilibria::{Aim, Search, equilibria};
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
 use contrapposto::joint_torques::{JointTorques, JointTorquesError, Quantities, effort, relative_load};
@@ -354,7 +354,7 @@ fn relaxed_arms_with_many_loads_have_the_same_bits_in_any_number_of_threads() {
                 locked: &[],
                 most_work: usize::MAX,
                 scattered: contrapposto::equilibria::SCATTERED_STARTS,
-                wanted: Wanted::Ways,
+                aim: Aim::Ways,
                 threads: 1,
             };
             equilibria(&search, Options { local_minima: 0, ..Options::least_effort() })

@@ -5,7 +5,7 @@
 use std::sync::OnceLock;
 
 use contrapposto::contact::{Place, Region, Support};
-use contrapposto::equilibria::{Equilibria, Search, Wanted, equilibria};
+use contrapposto::equilibria::{Aim, Equilibria, Search, equilibria};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Sex, adult};
 use contrapposto::posture::Posture;
@@ -106,7 +106,7 @@ fn found() -> &'static [(Waiting, Equilibria); 2] {
                 locked: &[],
                 most_work: usize::MAX,
                 scattered: contrapposto::equilibria::SCATTERED_STARTS,
-                wanted: Wanted::Ways,
+                aim: Aim::Ways,
                 threads: 1,
             };
             let options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };

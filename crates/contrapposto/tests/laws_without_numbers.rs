@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::contact::{Balance, ContactForces, Support};
-use contrapposto::equilibria::{Search, Wanted, equilibria};
+use contrapposto::equilibria::{Aim, Search, equilibria};
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
 use contrapposto::joint_torques::{JointTorques, Quantities};
@@ -141,7 +141,7 @@ fn a_search_is_finite_or_refused_by_name() {
             locked: &[],
             most_work: usize::MAX,
             scattered: contrapposto::equilibria::SCATTERED_STARTS,
-            wanted: Wanted::Ways,
+            aim: Aim::Ways,
             threads: 1,
         };
         match equilibria(&search, Options { max_steps: 60, ..Options::least_effort() }) {

@@ -9,7 +9,7 @@ mod support;
 use contrapposto::assessment::{AssessSettings, assess};
 use contrapposto::constraint::{HalfSpace, relief_step};
 use contrapposto::contact::{ContactForces, Support};
-use contrapposto::equilibria::{Search, Wanted, equilibria, stability};
+use contrapposto::equilibria::{Aim, Search, equilibria, stability};
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::{Problem, Strategy, minimise, minimise_literal};
 use contrapposto::joint_torques::{JointTorques, Quantities};
@@ -209,7 +209,7 @@ impl Setting {
                 locked: &[],
                 most_work: usize::MAX,
                 scattered: contrapposto::equilibria::SCATTERED_STARTS,
-                wanted: Wanted::Ways,
+                aim: Aim::Ways,
                 threads: 1,
             };
             format!(

@@ -16,7 +16,7 @@ use contrapposto::tasks::{self, CenterOfMass, Effort, Orientation, Point, Task};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use contrapposto::equilibria::{Equilibria, Mirror, SCATTERED_STARTS, Search, SearchError, Wanted, equilibria};
+use contrapposto::equilibria::{Aim, Equilibria, Mirror, SCATTERED_STARTS, Search, SearchError, equilibria};
 use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::Load;
 use nalgebra::{Matrix3, Vector3};
@@ -97,7 +97,7 @@ impl Standing {
             locked: &[],
             most_work: usize::MAX,
             scattered: SCATTERED_STARTS,
-            wanted: Wanted::Ways,
+            aim: Aim::Ways,
             threads: 1,
         }
     }
@@ -451,7 +451,7 @@ fn a_limb_that_hangs_in_the_start_hangs_in_every_answer_and_one_that_is_upright_
             locked: &[],
             most_work: usize::MAX,
             scattered: SCATTERED_STARTS,
-            wanted: Wanted::Ways,
+            aim: Aim::Ways,
             threads: 1,
         };
         let found = equilibria(&search, OPTIONS).unwrap();

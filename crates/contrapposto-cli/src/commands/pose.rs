@@ -3,7 +3,7 @@
 use std::slice::from_ref;
 
 use contrapposto::contact::{Balance, Slip};
-use contrapposto::equilibria::{Search, Wanted, equilibria};
+use contrapposto::equilibria::{Aim, Search, equilibria};
 use contrapposto::posture_solver::{Engine, EngineError, Options, Reason, SolvedPosture};
 use contrapposto::suggestions::{Advice, Change, Job, Trial, changes};
 use contrapposto::tasks::{PriorityLevel, Task};
@@ -217,7 +217,7 @@ fn least_effort_in_balance(scenario: &PoseScenario, goals: &[PriorityLevel]) -> 
         locked: &scenario.locked,
         most_work: MOST_BALANCE_WORK,
         scattered: contrapposto::equilibria::SCATTERED_STARTS,
-        wanted: Wanted::Ways,
+        aim: Aim::Ways,
         threads: 1,
     };
     let found = equilibria(&search, Options { local_minima: 0, ..Options::least_effort() }).ok()?;

@@ -1,7 +1,7 @@
 //! Reads a scenario for `contrapposto relax`: body, start, loads, supports and tasks.
 
 use contrapposto::contact::{Support, root_rates};
-use contrapposto::equilibria::{SCATTERED_STARTS, Search, Wanted};
+use contrapposto::equilibria::{Aim, SCATTERED_STARTS, Search};
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
@@ -66,7 +66,7 @@ impl RelaxScenario {
             locked: &self.locked,
             most_work: usize::MAX,
             scattered: SCATTERED_STARTS,
-            wanted: Wanted::Ways,
+            aim: Aim::Ways,
             threads: 1,
         }
     }

@@ -9,7 +9,7 @@ use super::other_places::other_places;
 use super::outcome::{Equilibria, MOST_MINIMA};
 use super::raised_limbs::LimbsWithoutTask;
 use super::scattered::scattered;
-use super::search::{Search, SearchError, Stage, Wanted};
+use super::search::{Aim, Search, SearchError, Stage};
 use super::solvers::{Attempt, EVERYTHING, Outcome, Solvers, Start, Steps, Way};
 use super::ways_to_stand::DifferentWays;
 use crate::batch;
@@ -135,7 +135,7 @@ impl<'a> Finder<'a> {
 
     /// Whether postures of an earlier search stand in for exploring.
     pub(super) fn is_told(&self) -> bool {
-        !self.search.wanted.known().is_empty()
+        !self.search.aim.known().is_empty()
     }
 
     pub(super) fn exploratory(&self, from: &Posture, way: Way, label: String) -> Start {
@@ -147,7 +147,7 @@ impl<'a> Finder<'a> {
     fn converge(&mut self) {
         let starts = self.starts;
         let mut explored = self.worth(Stage::Exploratory, Worth::START);
-        let known = self.search.wanted.known().iter();
+        let known = self.search.aim.known().iter();
         explored.extend(known.map(|posture| (posture.clone(), vec!["an earlier posture".to_owned()])));
         let mut before = self.begin_stage();
         self.solve_straight(Stage::Nearest, explored);
@@ -157,7 +157,7 @@ impl<'a> Finder<'a> {
         if !near.is_empty() {
             before = near;
         }
-        let all_ways = matches!(self.search.wanted, Wanted::Ways);
+        let all_ways = matches!(self.search.aim, Aim::Ways);
         let hopped = if all_ways { HOPPED_OF_ALL } else { HOPPED_TO_LEAST };
         let others = least.split_off(hopped.min(least.len()));
         self.solve_straight(Stage::Converged, least);

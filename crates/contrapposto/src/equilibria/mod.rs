@@ -48,7 +48,7 @@ pub use finder::equilibria_watched;
 pub use mirror::Mirror;
 pub use outcome::{Carried, Equilibria, Hanging, RelaxedPosture, Work};
 pub use scattered::SCATTERED_STARTS;
-pub use search::{Search, SearchError, Wanted};
+pub use search::{Aim, Search, SearchError};
 pub use stability::{Direction, LEAST_MASS, Stability, stability, stiffness};
 
 use crate::posture_solver::Options;

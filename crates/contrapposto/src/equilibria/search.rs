@@ -31,14 +31,14 @@ pub struct Search<'a> {
     /// of another method find); 0 where the posture is known to be near, as after a rest.
     pub scattered: usize,
     /// The postures that the caller needs.
-    pub wanted: Wanted<'a>,
+    pub aim: Aim<'a>,
     /// Threads that solve from the starts; the answer does not depend on their number. One is right where the caller has its own.
     pub threads: usize,
 }
 
 /// The postures that a search is for.
 #[derive(Clone, Copy, Debug, Default)]
-pub enum Wanted<'a> {
+pub enum Aim<'a> {
     /// All different ways to stand.
     #[default]
     Ways,
@@ -47,7 +47,7 @@ pub enum Wanted<'a> {
     Least(&'a [Posture]),
 }
 
-impl Wanted<'_> {
+impl Aim<'_> {
     /// Postures of earlier searches.
     pub(super) fn known(&self) -> &[Posture] {
         match self {

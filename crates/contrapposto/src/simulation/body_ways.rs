@@ -7,7 +7,7 @@ use super::body_motion::{BodyMotion, engine, is_effort};
 use super::easiest::{Budget, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference};
 use super::path::{Path, Planner};
 use crate::contact::{Balance, Support};
-use crate::equilibria::{SCATTERED_STARTS, Wanted};
+use crate::equilibria::{Aim, SCATTERED_STARTS};
 use crate::joint_torques::JointTorquesError;
 use crate::kinematics::Kinematics;
 use crate::posture::Posture;
@@ -98,7 +98,7 @@ impl BodyMotion<'_> {
         let levels: Vec<PriorityLevel> = self.levels().cloned().collect();
         let errors = self.errors_above_effort();
         let loads = self.engine.loads();
-        let now = Now { model: &self.model, posture, levels: &levels, loads, effort, wanted: Wanted::Least(known) };
+        let now = Now { model: &self.model, posture, levels: &levels, loads, effort, aim: Aim::Least(known) };
         // A search that finds nothing leaves the body as it is.
         Ok(easiest(self.scenario, now, &errors, &self.supports, budget).unwrap_or_default())
     }

@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Support, rates_that_move};
-use crate::equilibria::{RelaxedPosture, Search, SearchError, Wanted, equilibria};
+use crate::equilibria::{Aim, RelaxedPosture, Search, SearchError, equilibria};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::posture_solver::{LevelError, Options};
@@ -66,7 +66,7 @@ pub(super) struct Now<'a> {
     pub(super) loads: &'a [Load],
     pub(super) effort: f64,
     /// The postures that the search is for.
-    pub(super) wanted: Wanted<'a>,
+    pub(super) aim: Aim<'a>,
 }
 
 /// Amount of work that a search may do.
@@ -141,7 +141,7 @@ pub(super) fn search(
         locked,
         most_work: budget.work,
         scattered: budget.scattered,
-        wanted: now.wanted,
+        aim: now.aim,
         threads: scenario.run.threads,
     };
     let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_SOLVE_STEPS, ..Options::least_effort() };

@@ -13,7 +13,7 @@ use super::easiest::{Budget, Now, Searched, search};
 use super::path::Path;
 use super::sample::FootStep;
 use crate::contact::{Place, Support};
-use crate::equilibria::{RelaxedPosture, Wanted};
+use crate::equilibria::{Aim, RelaxedPosture};
 use crate::kinematics::Kinematics;
 use crate::model::Side;
 use crate::posture::Posture;
@@ -58,8 +58,7 @@ pub(super) fn plan_step(
         let mut supports = body.supports().to_vec();
         supports[i].place = scenario.supports[i].place.clone();
         let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
-        let now =
-            Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort, wanted: Wanted::Ways };
+        let now = Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort, aim: Aim::Ways };
         let locked: Vec<usize> = scenario.locked_rates().collect();
         let share = Budget { scattered: 0, work: left / (free.len() - k), carriers_stay: true };
         let Ok(searched) = search(scenario, now, &supports, &locked, share) else { continue };

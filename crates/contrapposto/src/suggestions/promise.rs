@@ -2,7 +2,7 @@
 
 use super::change::{Change, Job};
 use crate::assessment::{AssessSettings, assess};
-use crate::equilibria::{Search, Wanted};
+use crate::equilibria::{Aim, Search};
 use crate::posture::Posture;
 use crate::posture_solver::{Engine, Options};
 use crate::simulation::{Scenario, Summary};
@@ -31,7 +31,7 @@ pub fn by_promise(scenario: &Scenario, summary: &Summary, changes: Vec<Change>) 
             locked: &locked,
             most_work: usize::MAX,
             scattered: crate::equilibria::SCATTERED_STARTS,
-            wanted: Wanted::Ways,
+            aim: Aim::Ways,
             threads: 1,
         },
         changes,
