@@ -18,7 +18,11 @@
 //! The posture to which a start leads depends on nothing that was solved before (`solvers.rs`). So several threads may solve starts
 //! ([`Search::threads`]); their postures are taken in the order of the starts.
 //!
-//! From every different posture that does not need far more effort than the easiest one, basin hopping then converges, in descents
+//! A search for the posture of least effort alone ([`Aim::Least`]) may be given local minima of an earlier search of the same body; they stand
+//! in for 3 to 5 and for single goals.
+//!
+//! From every different posture that does not need far more effort than the easiest one a descent leads near its local minimum; from those of
+//! least effort basin hopping seeks lower ones, and of the others, where all ways to stand are wanted, each is followed to its end, in descents
 //! that cost a third of a step of priorities each. Two postures count as one if at no joint the torque of loads or of
 //! passive tissue differs by more than a twentieth of the strength there and no segment is elsewhere: minima can be flat, a forearm
 //! may rotate without load on a muscle. Of those the one of least effort is kept. A limb without a task that hangs in the start is not held up: postures
