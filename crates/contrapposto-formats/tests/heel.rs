@@ -39,7 +39,7 @@ const BALL_X: f64 = 0.0722 * STATURE;
 const SOLE_Y: f64 = -0.0157 * STATURE;
 const HALF_BREADTH: f64 = 0.0275 * STATURE;
 
-/// What a posture has under the left foot.
+/// Weight, place and heights of the left foot in a posture.
 struct Foot {
     /// Weight on it, N.
     weight: f64,
