@@ -1,7 +1,8 @@
 //! Compares `relax` with SLSQP of scipy from 50 random starts on the same problems of least effort, and checks what was kept of SLSQP.
 //!
 //! `data/effort_slsqp.json` is written by `scripts/effort_by_slsqp.py`: of every scenario all runs, and the best posture. Effort, balance,
-//! supports and tasks of that posture are computed anew here, so that nothing rests on SLSQP's word.
+//! supports and tasks of that posture are computed anew here, so that nothing rests on SLSQP's word. A scenario that has changed since is in
+//! `data/effort_slsqp/` as SLSQP had it.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
@@ -40,7 +41,8 @@ fn kept() -> Vec<Kept> {
     let data: Value = serde_json::from_str(&data).unwrap();
     let scenarios = data["scenarios"].as_object().unwrap().iter();
     let read = scenarios.map(|(name, found)| {
-        let file: PathBuf = here.join(format!("../../scenarios/{name}.toml"));
+        let before: PathBuf = here.join(format!("tests/data/effort_slsqp/{name}.toml"));
+        let file = if before.exists() { before } else { here.join(format!("../../scenarios/{name}.toml")) };
         let scenario = read_relax(name, &std::fs::read(file).unwrap(), None).unwrap();
         let coordinates = scenario.model.coordinates().iter();
         let values = coordinates.map(|c| found["best"]["coordinates"][&c.name].as_f64().unwrap()).collect();

@@ -15,6 +15,7 @@ use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::tasks::{CenterOfMassGoal, LookAtGoal, Task};
 use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::{InputError, PoseScenario, read_pose, read_scenario, scenario_model, scenario_schema};
+use nalgebra::Vector3;
 
 const HEAD: &str = "format = 1\n";
 
@@ -157,6 +158,10 @@ fn defaults_are_those_of_the_page() {
     assert_eq!(model.segments()[look.segment].name, "head");
     assert_eq!(look.eye, model.segments()[look.segment].center_of_mass);
     assert_eq!(look.direction.x, 1.0);
+    // A palm that faces down: the direction in ground has the length 1, whatever its length in the file.
+    let palm = "kind = \"look_at\"\nsegment = \"hand_r\"\ndirection = [0, 0, -1]\ntarget_direction = [0, -3, 0]\n";
+    let Task::LookAt(look) = task(palm) else { panic!() };
+    assert_eq!((look.direction.z, look.goal), (-1.0, LookAtGoal::Direction(-Vector3::y_axis())));
     let hand = at_default(&model, "hand_r");
     let Task::Point(point) = task("kind = \"point\"\nsegment = \"hand_r\"\ntarget = \"start\"\n") else { panic!() };
     assert_eq!((point.target, point.axes), (hand.translation.vector, [true; 3]));
@@ -313,7 +318,19 @@ fn mistakes_are_refused_where_they_stand() {
             "3, column 8",
             "needs `target_q",
         ),
-        ("[[task]]\nkind = \"look_at\"\n", "3, column 8", "needs `target_m`"),
+        ("[[task]]\nkind = \"look_at\"\n", "3, column 8", "needs `target_m`, or `target_direction`"),
+        (
+            "[[task]]\nkind = \"look_at\"\ntarget_m = [2, 1, 0]\ntarget_direction = [1, 0, 0]\n",
+            "5, column 1",
+            "two targets",
+        ),
+        (
+            "[[task]]\nkind = \"look_at\"\ntarget_direction = [1, 0, 0]\neye_m = [0, 0.1, 0]\n",
+            "5, column 1",
+            "does not go with `target_direction`",
+        ),
+        ("[[task]]\nkind = \"look_at\"\ntarget_direction = [0, 0, 0]\n", "4, column 20", "has no length"),
+        ("[[task]]\nkind = \"point\"\ntarget_direction = [0, 1, 0]\n", "4, column 1", "does not go with a point task"),
         (
             "[[task]]\nkind = \"look_at\"\ntarget_m = [2, 1, 0]\ndirection = [0, 0, 0]\n",
             "5, column 13",

@@ -10,7 +10,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Sex, adult};
 use contrapposto::posture::Posture;
 use contrapposto::posture_solver::{Engine, Options};
-use contrapposto::tasks::{CenterOfMass, CenterOfMassGoal, Effort, Orientation, PriorityLevel, Task};
+use contrapposto::tasks::{CenterOfMass, CenterOfMassGoal, Effort, Orientation, PriorityLevel, Task, turned_since};
 use nalgebra::Vector3;
 
 /// From side by side to 0.3 m ahead, and 0.2 m aside.
@@ -177,4 +177,24 @@ fn no_place_near_that_of_a_free_foot_has_less_effort() {
         assert!(effort > best.effort * (1.0 - 1e-6), "{effort} {}", best.effort);
     }
     assert!(tried >= 3, "{tried}");
+}
+
+/// Limits of a turn that are counted from another posture allow the same places: the foot is at a limit in both or in neither.
+#[test]
+fn limits_of_a_turn_are_the_same_from_another_posture() {
+    let waiting = Waiting::new();
+    let model = &waiting.model;
+    let start = model.default_posture();
+    let support = &waiting.supports(free())[1];
+    // Half of the outward turn and all of the inward one.
+    for turn in [0.3, -0.2] {
+        let now = waiting.with_foot_moved(&start, Vector3::new(0.05, 0.0, -0.05), turn);
+        let [from, to] = [&start, &now].map(|posture| kinematics(model, posture));
+        let moved = turned_since(support, model, &from, &to);
+        let (Place::Free(before), Place::Free(after)) = (&support.place, &moved.place) else { panic!() };
+        assert_eq!(before.corners, after.corners);
+        let expected = (TURN.0 - turn, TURN.1 - turn);
+        let off = (after.turn.0 - expected.0).abs().max((after.turn.1 - expected.1).abs());
+        assert!(off < 1e-6, "{:?} {expected:?}", after.turn);
+    }
 }

@@ -3,6 +3,7 @@
 //! `text`, `task_text` and `obstacle_text` hold the file as it is written; `setup` reads what all experiments share; `simulate`,
 //! `pose` and `relax` complete it for one command each. `world` reads things by name: box, tool, seat, table.
 
+mod ball;
 mod contents;
 mod error_keys;
 mod events;

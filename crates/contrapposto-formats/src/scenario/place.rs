@@ -8,7 +8,8 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{LARGEST, Model};
 use nalgebra::Vector3;
 
-use super::task_text::{NamedPlaceText, PlaceText, RegionText, SupportText};
+use super::ball::sole;
+use super::task_text::{HeelText, NamedPlaceText, PlaceText, RegionText, SupportText};
 use crate::input_error::InputError;
 use crate::toml_file::{Located, shown};
 
@@ -34,7 +35,7 @@ pub(super) fn set_places(
     supports: &mut [Support],
 ) -> Result<(), InputError> {
     for (i, text) in texts.iter().enumerate() {
-        supports[i].place = place(at, (model, kinematics), supports, i, &text.place)?;
+        supports[i].place = place(at, (model, kinematics), supports, i, (text, texts))?;
     }
     Ok(())
 }
@@ -45,14 +46,14 @@ fn place(
     (model, kinematics): (&Model, &Kinematics),
     supports: &[Support],
     i: usize,
-    text: &PlaceText,
+    (text, texts): (&SupportText, &[&SupportText]),
 ) -> Result<Place, InputError> {
-    let region = match text {
+    let region = match &text.place {
         PlaceText::Named(NamedPlaceText::Start) => return Ok(Place::Fixed),
         PlaceText::Named(NamedPlaceText::Free) => &RegionText::default(),
         PlaceText::Region(region) => region,
     };
-    let default = region_beside_others(model, kinematics, supports, i);
+    let default = default_region(model, kinematics, (supports, texts), i);
     let corners = match &region.corners_m {
         Some(corners) => corners_of_file(at, i, corners)?,
         None => default.corners,
@@ -76,6 +77,26 @@ fn corners_of_file(at: &Located, i: usize, corners: &[[f64; 3]]) -> Result<Vec<V
         Some(value) => error(format!("a corner of the region is at {} m; 1e9 at most", shown(*value))),
         None => Ok(corners.iter().copied().map(Vector3::from).collect()),
     }
+}
+
+/// The region of support number `i` without numbers of the file. Feet whose heel is free have the regions of their soles, each as far from
+/// the middle of the ball as from that of the sole at the start.
+fn default_region(
+    model: &Model,
+    kinematics: &Kinematics,
+    (supports, texts): (&[Support], &[&SupportText]),
+    i: usize,
+) -> Region {
+    let whole = |(support, text): (&Support, &&SupportText)| match text.heel {
+        HeelText::Free => sole(model, support).unwrap_or_else(|| support.clone()),
+        HeelText::Down => support.clone(),
+    };
+    let whole: Vec<Support> = supports.iter().zip(texts).map(whole).collect();
+    let middle = |support: &Support| kinematics.station(model, support.segment, support.middle());
+    let mut region = region_beside_others(model, kinematics, &whole, i);
+    let ahead = middle(&supports[i]) - middle(&whole[i]);
+    region.corners.iter_mut().for_each(|corner| *corner += ahead);
+    region
 }
 
 /// The region of a support beside the nearest other one on the same surface.

@@ -7,6 +7,7 @@ use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto::tasks::{Task, Thing as Obstacle};
 
+use super::ball::with_free_heels;
 use super::flat::lay_flat;
 use super::head::check_head;
 use super::levels::{Level, levels};
@@ -55,9 +56,12 @@ impl Setup {
     pub(super) fn read(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Self, InputError> {
         check_head(at, text)?;
         let model = body(at, text, file)?;
-        let mut start = model.default_posture();
         let world = read_world(at, text, &model)?;
         let at = &at.with_aliases(world.aliases(text));
+        let built_in = text.model.file.is_none();
+        let texts: Vec<&SupportText> = text.support.iter().chain(&world.supports).collect();
+        let (model, texts) = with_free_heels(at, (model, built_in), &texts)?;
+        let mut start = model.default_posture();
         world.seed(&model, &mut start);
         set(at, &model, &["posture"], &text.posture, &mut start)?;
         set_result(at, &model, &text.start_from, &mut start)?;
@@ -66,10 +70,9 @@ impl Setup {
         let load = |(i, text): (usize, _)| load(at, &model, &["load", &i.to_string()], text);
         let mut loads = text.load.iter().enumerate().map(load).collect::<Result<Vec<Load>, _>>()?;
         loads.extend(world.loads.iter().cloned());
-        let texts: Vec<&SupportText> = text.support.iter().chain(&world.supports).collect();
+        let texts: Vec<&SupportText> = texts.iter().collect();
         let standing = support::segments(at, &model, &texts)?;
         let mut notes = vec![];
-        let built_in = text.model.file.is_none();
         let mut supports = match support::resting(at, built_in, &model, (&texts, &standing)) {
             Ok(resting) => {
                 let free = free_rates(at, &model, text)?;

@@ -5,7 +5,7 @@ use contrapposto::tasks::{
     CenterOfMass, CenterOfMassGoal, Distance, Effort, LookAt, LookAtGoal, Orientation, Placement, Point, Posture, Task,
     TaskError,
 };
-use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, Unit, UnitQuaternion, UnitVector3, Vector3};
 
 use super::error_keys::task_path;
 use super::names;
@@ -86,16 +86,31 @@ impl Reader<'_> {
 
     fn look_at(&self) -> Result<Task, InputError> {
         let segment = self.segment(Some("head"))?;
-        let Some(target) = self.text.target_m else {
-            return Err(self.error("kind", "a look_at task needs `target_m`", None));
-        };
         let eye = self.text.eye_m.map_or(self.stage.model.segments()[segment].center_of_mass, Vector3::from);
-        let direction = Vector3::from(self.text.direction.unwrap_or([1.0, 0.0, 0.0]));
-        let direction = self.bounded("direction", direction)?;
-        let Some(direction) = Unit::try_new(direction, 1e-9) else {
-            return Err(self.error("direction", "the direction has no length", None));
-        };
-        Ok(Task::LookAt(LookAt { segment, eye, direction, goal: LookAtGoal::Place(target.into()) }))
+        let direction = self.unit("direction", self.text.direction.unwrap_or([1.0, 0.0, 0.0]))?;
+        Ok(Task::LookAt(LookAt { segment, eye, direction, goal: self.end_of_gaze()? }))
+    }
+
+    /// `target_m` or `target_direction` of a gaze.
+    fn end_of_gaze(&self) -> Result<LookAtGoal, InputError> {
+        match (self.text.target_m, self.text.target_direction) {
+            (Some(target), None) => Ok(LookAtGoal::Place(target.into())),
+            (None, Some(_)) if self.text.eye_m.is_some() => {
+                let help = "leave it out: a direction is the same from every point".to_owned();
+                Err(self.key_error("eye_m", "`eye_m` does not go with `target_direction`", Some(help)))
+            }
+            (None, Some(direction)) => Ok(LookAtGoal::Direction(self.unit("target_direction", direction)?)),
+            (Some(_), Some(_)) => {
+                let help = "keep one of `target_m` and `target_direction`".to_owned();
+                Err(self.key_error("target_direction", "two targets are given", Some(help)))
+            }
+            (None, None) => Err(self.error("kind", "a look_at task needs `target_m`, or `target_direction`", None)),
+        }
+    }
+
+    fn unit(&self, key: &str, direction: [f64; 3]) -> Result<UnitVector3<f64>, InputError> {
+        let direction = self.bounded(key, direction.into())?;
+        Unit::try_new(direction, 1e-9).ok_or_else(|| self.error(key, "the direction has no length", None))
     }
 
     fn distance(&self) -> Result<Task, InputError> {

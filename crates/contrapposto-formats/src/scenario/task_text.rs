@@ -9,7 +9,7 @@ use serde::Deserialize;
 use crate::toml_file::{numbers, rows};
 
 /// A segment that carries weight: it stays where it is at the start, above all tasks.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SupportText {
     /// The segment that carries weight.
@@ -30,6 +30,21 @@ pub(crate) struct SupportText {
     /// program chooses place and turn, a foot beside the other one without crossing it; or a region.
     #[serde(default)]
     pub(crate) place: PlaceText,
+    /// Of a foot of the built-in adult: `"down"` (the default): the whole sole lies on the surface; `"free"`: the toes and the ball of
+    /// the foot lie on it and carry the weight, and the heel rises as the posture asks.
+    #[serde(default)]
+    pub(crate) heel: HeelText,
+}
+
+/// The heel of a foot that carries weight.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum HeelText {
+    /// On the surface.
+    #[default]
+    Down,
+    /// On the surface or above it; the ball of the foot carries the weight.
+    Free,
 }
 
 /// Place of a support, or a region for it.
@@ -133,6 +148,9 @@ pub(crate) struct TaskText {
     pub(crate) target: Option<TargetText>,
     /// point, center_of_mass at a place: which ground axes are asked for, such as `xy`; `xyz` when left out.
     pub(crate) axes: Option<String>,
+    /// look_at: a direction in ground along which the segment's direction should point, instead of a place; its length does not matter.
+    #[serde(default, deserialize_with = "numbers")]
+    pub(crate) target_direction: Option<[f64; 3]>,
     /// look_at: where the gaze begins, in the segment's frame, m; its centre of mass when left out.
     #[serde(default, deserialize_with = "numbers")]
     pub(crate) eye_m: Option<[f64; 3]>,
@@ -193,7 +211,7 @@ impl TaskKindText {
             Self::Placement => {
                 ("placement", &["segment", "at_m", "target_m", "target_quaternion", "target_deg", "target"])
             }
-            Self::LookAt => ("look_at", &["segment", "target_m", "eye_m", "direction"]),
+            Self::LookAt => ("look_at", &["segment", "target_m", "target_direction", "eye_m", "direction"]),
             Self::Distance => ("distance", &["a", "b", "range_m", "distance_m"]),
             Self::CenterOfMass => ("center_of_mass", &["target_m", "target", "axes", "polygon_m", "margin_m"]),
             Self::Posture => ("posture", &["coordinates", "weights", "values"]),

@@ -17,7 +17,7 @@ use crate::equilibria::{Aim, RelaxedPosture};
 use crate::kinematics::Kinematics;
 use crate::model::Side;
 use crate::posture::Posture;
-use crate::tasks::PriorityLevel;
+use crate::tasks::{PriorityLevel, turned_since};
 
 /// A step must bring effort, and the load of the tired group, below this share of what they are (assumed).
 const WORTH_A_STEP: f64 = 0.8;
@@ -56,7 +56,7 @@ pub(super) fn plan_step(
         (0..scenario.supports.len()).filter(|&i| scenario.supports[i].place != Place::Fixed).collect();
     for (k, &i) in free.iter().enumerate() {
         let mut supports = body.supports().to_vec();
-        supports[i].place = scenario.supports[i].place.clone();
+        supports[i].place = place_from(body, posture, &scenario.supports[i])?;
         let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
         let now = Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort, aim: Aim::Ways };
         let locked: Vec<usize> = scenario.locked_rates().collect();
@@ -95,8 +95,18 @@ fn relieves(candidate: &RelaxedPosture, now: &Posture, tired: Tired) -> bool {
 
 /// Middle of a support's patch in a posture, ground, m.
 fn middle(body: &BodyMotion<'_>, posture: &Posture, support: &Support) -> Result<Vector3<f64>, ScenarioError> {
+    Ok(evaluated(body, posture)?.station(&body.scenario().model, support.segment, support.middle()))
+}
+
+/// The places that a support may take from a posture, the limits of its turn counted from the scenario's start.
+fn place_from(body: &BodyMotion<'_>, posture: &Posture, support: &Support) -> Result<Place, ScenarioError> {
+    let (start, now) = (evaluated(body, &body.scenario().start)?, evaluated(body, posture)?);
+    Ok(turned_since(support, &body.scenario().model, &start, &now).place)
+}
+
+fn evaluated(body: &BodyMotion<'_>, posture: &Posture) -> Result<Kinematics, ScenarioError> {
     let model = &body.scenario().model;
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, posture).map_err(crate::joint_torques::JointTorquesError::from)?;
-    Ok(kinematics.station(model, support.segment, support.middle()))
+    Ok(kinematics)
 }

@@ -1,5 +1,7 @@
 //! Writes the tasks that keep a support where it belongs: at its placement of the start, or flat on its plane within a region.
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::{Rotation3, Unit, UnitVector3, Vector3};
 
 use super::bounds::{Bounds, Carried, Component};
@@ -25,6 +27,22 @@ pub fn held_place(support: &Support, model: &Model, kinematics: &Kinematics) -> 
     let tilt = |along| Component { of: Carried::Direction(upright), along, limits: (0.0, 0.0) };
     let at_height = Component { of: Carried::Point(middle), along: normal, limits: (height, height) };
     Task::Bounds(Bounds { segment, components: vec![at_height, tilt(across), tilt(along)] })
+}
+
+/// The support with the limits of its turn counted from the posture of `now`, where they are counted from that of `start`.
+#[must_use]
+pub fn turned_since(support: &Support, model: &Model, start: &Kinematics, now: &Kinematics) -> Support {
+    let mut support = support.clone();
+    let [normal, ahead, _] = support.axes();
+    let rotation = |kinematics: &Kinematics| kinematics.placement(model, support.segment).rotation;
+    let turned = rotation(now) * rotation(start).inverse() * ahead;
+    let turn = normal.dot(&ahead.cross(&turned)).atan2(ahead.dot(&turned));
+    if let Place::Free(Region { turn: (least, greatest), .. }) = &mut support.place {
+        // The posture itself is within them but for rounding; a limit is a quarter turn away at most.
+        *least = (*least - turn).clamp(-FRAC_PI_2, 0.0);
+        *greatest = (*greatest - turn).clamp(0.0, FRAC_PI_2);
+    }
+    support
 }
 
 /// The inequalities of a support whose place is free: the middle of its patch in its region, its turn about the normal within its

@@ -4,9 +4,13 @@
 //! is sought again from itself, by muscles that follow it, until these stay or no posture is better than the best so far. Every posture
 //! counts by its own muscles, and the search is done again from the muscles of the best one until it shows no better one.
 
+use contrapposto::contact::Support;
 use contrapposto::equilibria::{Equilibria, RelaxedPosture, Search, SearchError, described_anew, equilibria};
-use contrapposto::joint_torques::relative_load;
+use contrapposto::joint_torques::{JointTorquesError, relative_load};
 use contrapposto::kinematics::Kinematics;
+use contrapposto::posture::Posture;
+use contrapposto::posture_solver::EngineError;
+use contrapposto::tasks::turned_since;
 use contrapposto_formats::RelaxScenario;
 
 use super::super::trials::cores;
@@ -87,7 +91,10 @@ fn settle(scenario: &mut RelaxScenario, mut posture: RelaxedPosture) -> Result<S
     let (mut share, mut in_vain) = (1.0, 0);
     for round in 0..MOST_ROUNDS {
         // After the least work that there is the one start is the posture itself.
-        let nearby = Search { start: &posture.relaxed.posture, scattered: 0, most_work: 1, ..scenario.search() };
+        let supports = supports_from(scenario, &posture.relaxed.posture)?;
+        let search = scenario.search();
+        let start = &posture.relaxed.posture;
+        let nearby = Search { start, supports: &supports, scattered: 0, most_work: 1, ..search };
         let found = equilibria(&nearby, RelaxScenario::OPTIONS)?;
         let Some(first) = found.postures.into_iter().next() else { break };
         let starts = std::mem::replace(&mut posture, first).starts;
@@ -112,6 +119,18 @@ fn settle(scenario: &mut RelaxScenario, mut posture: RelaxedPosture) -> Result<S
         scenario.take_strength(&at);
     }
     Ok(best)
+}
+
+/// The supports of the scenario, a search for which begins in another posture: the limits of their turns are those of the scenario's start.
+fn supports_from(scenario: &RelaxScenario, posture: &Posture) -> Result<Vec<Support>, SearchError> {
+    let model = &scenario.model;
+    let kinematics = |posture| {
+        let mut kinematics = Kinematics::new(model);
+        kinematics.update(model, posture).map_err(|error| EngineError::from(JointTorquesError::from(error)))?;
+        Ok::<_, SearchError>(kinematics)
+    };
+    let (start, now) = (kinematics(&scenario.start)?, kinematics(posture)?);
+    Ok(scenario.supports.iter().map(|support| turned_since(support, model, &start, &now)).collect())
 }
 
 impl Settled {

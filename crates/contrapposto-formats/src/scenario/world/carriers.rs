@@ -11,7 +11,7 @@ use super::word::Word;
 use crate::input_error::InputError;
 use crate::scenario::obstacle_text::ObstacleText;
 use crate::scenario::support::FEET;
-use crate::scenario::task_text::{GroundText, NamedPlaceText, OnText, PlaceText, PlaneText, SupportText};
+use crate::scenario::task_text::{GroundText, HeelText, NamedPlaceText, OnText, PlaceText, PlaneText, SupportText};
 use crate::scenario::text::ScenarioText;
 use crate::toml_file::{Located, shown};
 
@@ -263,6 +263,7 @@ fn rests(segment: &str, on: OnText) -> SupportText {
         share_max: None,
         corners_m: None,
         place: PlaceText::default(),
+        heel: HeelText::default(),
     }
 }
 
