@@ -242,6 +242,76 @@ fn a_target_195_metres_up_is_not_reached_by_its_distance_from_the_hand() {
 }
 
 #[test]
+fn a_run_whose_nearest_posture_falls_begins_in_one_that_stands_and_says_who_is_too_weak() {
+    // Both hands hold 20 kg at shin height with a bent back; the posture nearest to the start falls forward.
+    let text = r#"
+format = 1
+title = "40 kg at shin height"
+[model]
+adult = { sex = "male", stature_m = 1.75, mass_kg = 75 }
+[posture]
+pelvis_ty_m = 0.905
+pelvis_tx_m = -0.12
+pelvis_tilt_deg = -50
+hip_flexion_r_deg = 60
+hip_flexion_l_deg = 60
+knee_angle_r_deg = 15
+knee_angle_l_deg = 15
+ankle_angle_r_deg = 5
+ankle_angle_l_deg = 5
+lumbar_extension_deg = -30
+arm_flex_r_deg = 90
+arm_flex_l_deg = 90
+[[support]]
+segment = "calcn_r"
+[[support]]
+segment = "calcn_l"
+[[load]]
+segment = "hand_r"
+mass_kg = 20
+[[load]]
+segment = "hand_l"
+mass_kg = 20
+[[task]]
+kind = "point"
+segment = "hand_r"
+at_m = [0, -0.07, 0]
+target_m = [0.35, 0.35, 0.20]
+above_relief = true
+[[task]]
+kind = "point"
+segment = "hand_l"
+at_m = [0, -0.07, 0]
+target_m = [0.35, 0.35, -0.20]
+above_relief = true
+same_priority = true
+[[task]]
+kind = "effort"
+[strategy]
+kind = "active"
+[run]
+duration_s = 1
+"#;
+    let scenario = read_scenario("lift.toml", text.as_bytes(), None).unwrap();
+    let (_, verdict, end) = run(&scenario);
+    assert_eq!(verdict.kind, VerdictKind::CannotBeDone, "{}", verdict.sentence);
+    // The weight of body and loads together acts between heels and toes.
+    let model = &scenario.model;
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &end).unwrap();
+    let hand = |name: &str| {
+        let hand = model.segment(name).unwrap();
+        kinematics.station(model, hand, model.segments()[hand].center_of_mass)
+    };
+    let held = 20.0 * (hand("hand_r") + hand("hand_l"));
+    let together = (model.mass() * kinematics.center_of_mass(model).unwrap() + held) / (model.mass() + 40.0);
+    let corners = scenario.supports.iter().flat_map(|support| support.corners.iter().map(|c| (support.segment, *c)));
+    let xs: Vec<f64> = corners.map(|(segment, corner)| kinematics.station(model, segment, corner).x).collect();
+    let (back, front) = xs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+    assert!(back - 1e-3 < together.x && together.x < front + 1e-3, "{} of {back}..{front}", together.x);
+}
+
+#[test]
 fn a_weight_before_the_body_with_every_joint_locked_cannot_stand_where_the_line_of_weight_leaves_the_feet() {
     let kilograms = 60.0;
     let load = format!(

@@ -4,7 +4,9 @@ use std::cell::Cell;
 
 use super::ScenarioError;
 use super::body_motion::{BodyMotion, engine, is_effort};
-use super::easiest::{Budget, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference};
+use super::easiest::{
+    Budget, MOST_SLIP, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference, search,
+};
 use super::path::{Path, Planner};
 use crate::contact::{Balance, Support};
 use crate::equilibria::{Aim, SCATTERED_STARTS};
@@ -43,7 +45,9 @@ impl BodyMotion<'_> {
         let mut posture = solved.posture;
         // A body whose weight acts at the very edge of its supports may be off balance by rounding.
         if let Some(missing) = self.recover_balance(&mut posture)? {
-            return Err(ScenarioError::CannotStand(missing));
+            let stands = self.standing(&posture);
+            self.forget();
+            return stands.ok_or(ScenarioError::CannotStand(missing));
         }
         // A task that is missed may need legs that stand in another way: with all joints free a search takes longer.
         let work = SEARCH_BUDGET_OF_STEP * if missed { 2 } else { 1 };
@@ -51,6 +55,25 @@ impl BodyMotion<'_> {
         let Searched { found, minima, work, cut } = self.easiest(&posture, &[], budget)?;
         self.forget();
         Ok(Searched { found: found.unwrap_or(posture), minima, work, cut })
+    }
+
+    /// The posture of least effort in which the supports hold the body, of those that a search with all joints free finds from `fallen`; `None`
+    /// where it finds none.
+    fn standing(&mut self, fallen: &Posture) -> Option<Searched<Posture>> {
+        let levels: Vec<PriorityLevel> = self.levels().cloned().collect();
+        let now = Now {
+            model: &self.model,
+            posture: fallen,
+            levels: &levels,
+            loads: self.engine.loads(),
+            effort: f64::INFINITY,
+            aim: Aim::Least(&[]),
+        };
+        let locked: Vec<usize> = self.scenario.locked_rates().collect();
+        let budget = Budget { scattered: SCATTERED_STARTS, work: SEARCH_BUDGET_OF_STEP, carriers_stay: false };
+        let Searched { found, minima, work, cut } = search(self.scenario, now, &self.supports, &locked, budget).ok()?;
+        let stands = found.into_iter().find(|found| found.relaxed.slip.length() <= MOST_SLIP)?;
+        Some(Searched { found: stands.relaxed.posture, minima, work, cut })
     }
 
     /// Errors of the levels above effort that ask for something, in the posture of the last update.

@@ -33,7 +33,7 @@ pub(super) const UNREACHED: f64 = 5e-4;
 /// A posture that is nearer to a task by more is worth a motion, m or rad. Assumed: the distance from which on a verdict calls a target missed.
 const WORTH_NEARING: f64 = 5e-3;
 /// A posture whose supports are farther off their places is none, m and rad together.
-const MOST_SLIP: f64 = 1e-5;
+pub(super) const MOST_SLIP: f64 = 1e-5;
 
 /// Change of every rate up to which a posture counts as searched when the one before was, rad or m. Assumed.
 const SEARCHED_NEARBY: f64 = 0.02;
