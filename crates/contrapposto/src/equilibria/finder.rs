@@ -153,7 +153,6 @@ impl<'a> Finder<'a> {
         let mut before = self.begin_stage();
         self.solve_straight(Stage::Nearest, explored);
         let mut least = self.worth(Stage::Nearest, Worth::ANSWER);
-        self.minima = least.iter().take(MOST_MINIMA).map(|(posture, _)| posture.clone()).collect();
         let near = self.begin_stage();
         if !near.is_empty() {
             before = near;
@@ -169,10 +168,23 @@ impl<'a> Finder<'a> {
         if all_ways {
             self.mirror_best();
         }
+        self.minima = self.minima_with(&before);
         if self.found.is_empty() {
             self.found = before;
         }
         self.starts = starts;
+    }
+
+    /// The different local minima found, and those of `near` that differ from all of them, each from that of least effort first.
+    fn minima_with(&self, near: &[Candidate]) -> Vec<Posture> {
+        let by_effort = |a: &&Candidate, b: &&Candidate| a.compare(b);
+        let mut found: Vec<&Candidate> = self.selected(Stage::Settled).into_iter().map(|i| &self.found[i]).collect();
+        found.sort_by(by_effort);
+        let mut others: Vec<&Candidate> =
+            near.iter().filter(|near| !found.iter().any(|known| known.is_same(near))).collect();
+        others.sort_by(by_effort);
+        let minima = found.into_iter().chain(others).take(MOST_MINIMA);
+        minima.map(|minimum| minimum.relaxed.posture.clone()).collect()
     }
 
     /// Solves in a stage from postures as they are.

@@ -37,15 +37,15 @@ struct Arc<'a> {
 }
 
 impl Arc<'_> {
-    fn angles(&self, turn: f64) -> Angles {
-        let by = UnitQuaternion::from_scaled_axis(turn * self.joint.axes[self.axis]);
-        self.joint.swing_twist.angles(&(self.rotation * by))
+    fn rotation_after(&self, turn: f64) -> UnitQuaternion<f64> {
+        self.rotation * UnitQuaternion::from_scaled_axis(turn * self.joint.axes[self.axis])
     }
 
     /// Whether all angles are in their ranges, or no farther outside than now.
     fn is_inside(&self, turn: f64) -> bool {
         let now = self.passive.angles();
-        self.joint.coordinates.iter().zip(self.angles(turn).values).all(|(&i, angle)| {
+        let values = self.joint.swing_twist.values(&self.rotation_after(turn));
+        self.joint.coordinates.iter().zip(values).all(|(&i, angle)| {
             let (low, high) = self.model.coordinates()[i].range;
             (low.min(now[i])..=high.max(now[i])).contains(&angle)
         })
@@ -65,7 +65,7 @@ impl Arc<'_> {
 
     /// Passive torque about the axis after the turn, N m; `values` is space for the angles of all coordinates.
     fn torque(&self, turn: f64, values: &mut [f64]) -> f64 {
-        let angles = self.angles(turn);
+        let angles = self.joint.swing_twist.angles(&self.rotation_after(turn));
         self.passive.torque_at(self.model, self.joint, &angles, self.axis, values)
     }
 
