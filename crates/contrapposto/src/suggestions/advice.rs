@@ -70,7 +70,8 @@ impl Advice {
         } else {
             Gains::new(job.model, heading(verdict, &helping), verdict, &helping)
         };
-        let notes = notes(verdict, &helping, &tried, &not_tried);
+        let too_little = too_little(verdict, &helping).filter(|_| !has_motors(job.model));
+        let notes = too_little.into_iter().chain(notes(verdict, &helping, &tried, &not_tried)).collect();
         Self { helping, not_tried, gains, largest: None, notes }
     }
 }
@@ -115,6 +116,17 @@ fn notes(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tried:
         _ if hazard_stays(verdict, helping) => Some(format!("No change that was tried ends every hazard.{others}")),
         _ => None,
     };
-    let left = (!not_tried.is_empty()).then(|| format!("Not tried: {}.", not_tried.join("; ")));
+    let left = (!not_tried.is_empty())
+        .then(|| format!("Not tried, as the solver steps for trials were used up: {}.", not_tried.join("; ")));
     of_all.into_iter().chain(left).collect()
+}
+
+/// Says that no change that helps lets people go on for the asked time: those of mean strength, or only weaker ones.
+fn too_little(verdict: &Verdict, helping: &[Suggestion]) -> Option<String> {
+    let asked = helping.first()?.asked?;
+    let enough = |one: &Suggestion| one.kind == VerdictKind::Holds;
+    let for_weaker = |one: &Suggestion| one.least.is_none_or(|least| one.reaches(least));
+    let people = if helping.iter().any(enough) { "weaker people" } else { "people of mean strength" };
+    let lacks = !helping.iter().any(for_weaker) && verdict.least.is_none_or(|least| least < asked);
+    lacks.then(|| format!("No single change that was tried suffices for {people}."))
 }

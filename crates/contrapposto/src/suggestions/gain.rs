@@ -21,8 +21,8 @@ pub struct Gains {
 }
 
 /// A job as it is, or with a change.
-struct Row<'a> {
-    change: &'a str,
+struct Row {
+    change: String,
     kind: VerdictKind,
     asked: Option<f64>,
     seconds: Option<f64>,
@@ -35,7 +35,7 @@ impl Gains {
     /// The table of changes that help the job with this verdict.
     pub(super) fn new(model: &Model, heading: &str, before: &Verdict, helping: &[Suggestion]) -> Self {
         let as_it_is = Row {
-            change: "as it is",
+            change: "as it is".to_owned(),
             kind: before.kind,
             // A run that settled before its end is beside the same time as its changes.
             asked: helping.first().map_or(before.asked, |one| one.asked),
@@ -44,16 +44,17 @@ impl Gains {
             hazards: before.hazards.len(),
             hands: before.hands.len(),
         };
-        let rows: Vec<Row<'_>> = std::iter::once(as_it_is).chain(helping.iter().map(Row::from)).collect();
-        let (hazards, hands) = (rows.iter().any(|row| row.hazards > 0), rows.iter().any(|row| row.hands > 0));
         let people = !has_motors(model);
+        let with = |one| Row::new(one, before, people);
+        let rows: Vec<Row> = std::iter::once(as_it_is).chain(helping.iter().map(with)).collect();
+        let (hazards, hands) = (rows.iter().any(|row| row.hazards > 0), rows.iter().any(|row| row.hands > 0));
         let mut columns = vec![heading];
         columns.extend_from_slice(if people { &OF_PEOPLE } else { &["lasts"] });
         let at_end = if before.asked.is_some() { "hazard for ligaments at the end" } else { "hazard for ligaments" };
         columns.extend(hazards.then_some(at_end));
         columns.extend(hands.then_some("strength of the grip"));
-        let cells = |row: &Row<'_>| {
-            let mut cells = vec![row.change.to_owned(), row.time()];
+        let cells = |row: &Row| {
+            let mut cells = vec![row.change.clone(), row.time()];
             cells.extend(people.then(|| row.time_of_weaker()));
             cells.extend(hazards.then(|| row.hazards_in_words()));
             cells.extend(hands.then(|| row.grip_in_words()));
@@ -63,10 +64,18 @@ impl Gains {
     }
 }
 
-impl<'a> From<&'a Suggestion> for Row<'a> {
-    fn from(with: &'a Suggestion) -> Self {
+impl Row {
+    /// A change; where somebody holds out for less time with it, that is said beside it.
+    fn new(with: &Suggestion, before: &Verdict, people: bool) -> Self {
+        let shorter = match with.shortens(before) {
+            [true, true] if people => "; shorter for everybody",
+            [true, _] if people => "; shorter for people of mean strength",
+            [_, true] if people => "; shorter for weaker people",
+            [true, _] => "; shorter",
+            _ => "",
+        };
         Self {
-            change: &with.change,
+            change: with.change.clone() + shorter,
             kind: with.kind,
             asked: with.asked,
             seconds: with.seconds,
@@ -75,9 +84,7 @@ impl<'a> From<&'a Suggestion> for Row<'a> {
             hands: with.hands,
         }
     }
-}
 
-impl Row<'_> {
     /// `6.5 min`, `2.0 min, too short`, `no limit`, or the reason for which it cannot be done.
     fn time(&self) -> String {
         match self.kind {
