@@ -1,6 +1,6 @@
 //! Says what the changes of a job give, as a table: the times without and with each of them.
 
-use super::trial::Suggestion;
+use super::trial::{Suggestion, hazards_in_words};
 use crate::model::Model;
 use crate::verdict::{A_DAY, Verdict, VerdictKind, has_motors, how_long};
 
@@ -28,6 +28,8 @@ struct Row {
     seconds: Option<f64>,
     least: Option<f64>,
     hazards: usize,
+    /// The postures in hazard, in words.
+    hazard: String,
     hands: usize,
 }
 
@@ -42,10 +44,11 @@ impl Gains {
             seconds: before.seconds,
             least: before.least,
             hazards: before.hazards.len(),
+            hazard: hazards_in_words(model, before),
             hands: before.hands.len(),
         };
         let people = !has_motors(model);
-        let with = |one| Row::new(one, before, people);
+        let with = |one| Row::new(one, (model, before), people);
         let rows: Vec<Row> = std::iter::once(as_it_is).chain(helping.iter().map(with)).collect();
         let (hazards, hands) = (rows.iter().any(|row| row.hazards > 0), rows.iter().any(|row| row.hands > 0));
         let mut columns = vec![heading];
@@ -66,7 +69,7 @@ impl Gains {
 
 impl Row {
     /// A change; where somebody holds out for less time with it, that is said beside it.
-    fn new(with: &Suggestion, before: &Verdict, people: bool) -> Self {
+    fn new(with: &Suggestion, (model, before): (&Model, &Verdict), people: bool) -> Self {
         let shorter = match with.shortens(before) {
             [true, true] if people => "; shorter for everybody",
             [true, _] if people => "; shorter for people of mean strength",
@@ -81,6 +84,7 @@ impl Row {
             seconds: with.seconds,
             least: with.least,
             hazards: with.hazards,
+            hazard: with.hazard.clone().unwrap_or_else(|| hazards_in_words(model, before)),
             hands: with.hands,
         }
     }
@@ -126,13 +130,12 @@ impl Row {
         }
     }
 
-    /// `none`, `1 joint`, `2 joints`, or that nobody judged a body that falls.
+    /// `none`, `low back bent forward by 52°`, or that nobody judged a body that falls.
     fn hazards_in_words(&self) -> String {
         match self.hazards {
             0 if self.kind == VerdictKind::CannotStand => NOT_JUDGED.to_owned(),
             0 => "none".to_owned(),
-            1 => "1 joint".to_owned(),
-            joints => format!("{joints} joints"),
+            _ => self.hazard.clone(),
         }
     }
 }

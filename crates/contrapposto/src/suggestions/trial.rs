@@ -3,6 +3,7 @@
 use super::budget::Trial;
 use super::change::{Change, Job};
 use crate::equilibria::{Search, SearchError, equilibria};
+use crate::model::Model;
 use crate::posture_solver::Options;
 use crate::simulation::{Run, Scenario, ScenarioError, StopReason};
 use crate::verdict::{Verdict, VerdictKind, how_long};
@@ -26,6 +27,8 @@ pub struct Suggestion {
     pub least: Option<f64>,
     /// Number of coordinates that ligaments carry in hazard at the end.
     pub hazards: usize,
+    /// These postures in words, `low back bent forward by 52°`; `None` of breaks, in which they are those of the job.
+    pub hazard: Option<String>,
     /// Number of hands that hold half of the strength of their grip or more.
     pub hands: usize,
     /// Load of the hardest worked group.
@@ -95,6 +98,12 @@ fn times(seconds: Option<f64>, least: Option<f64>) -> (f64, f64) {
     (seconds.unwrap_or(f64::INFINITY), least.unwrap_or(f64::INFINITY))
 }
 
+/// The postures of all coordinates in hazard, in words.
+pub(super) fn hazards_in_words(model: &Model, verdict: &Verdict) -> String {
+    let all: Vec<String> = verdict.hazards.iter().map(|hazard| hazard.posture_in_words(model)).collect();
+    all.join(", ")
+}
+
 impl Suggestion {
     /// A change that leads to a verdict.
     pub fn new(job: &Job<'_>, change: &Change, verdict: &Verdict) -> Self {
@@ -105,6 +114,7 @@ impl Suggestion {
             seconds: verdict.seconds,
             least: verdict.least,
             hazards: verdict.hazards.len(),
+            hazard: Some(hazards_in_words(job.model, verdict)),
             hands: verdict.hands.len(),
             load: verdict.hardest.map(|group| group.load),
             lighter: matches!(change, Change::Loads(_)),
