@@ -146,3 +146,25 @@ fn a_break_that_assess_suggests_gives_the_minutes_of_the_repeated_job_with_that_
         assert!(promised["minutes"].as_f64().is_none_or(|minutes| minutes > 1.5 * without), "{promised} {without}");
     }
 }
+
+/// Rows of the table of a job whose weaker people alone lack time say whose time they shorten, and a lighter load that comes out as shorter is no row.
+#[test]
+fn simulate_lists_no_change_that_shortens_the_time_of_anybody_without_saying_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let job = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/screw-overhead.toml");
+    let run = contrapposto(["simulate"]).arg(job).arg("--out").arg(folder.path()).run();
+    let text = std::fs::read(folder.path().join("summary.json")).unwrap();
+    let found: Value = serde_json::from_slice(&text).unwrap();
+    let verdict = &found["verdict"];
+    let [mean, weaker] = [&verdict["minutes"], &verdict["minutes_range"][0]].map(|value| value.as_f64().unwrap());
+    let all = found["suggestions"].as_array().unwrap();
+    assert!(weaker < 5.0 && mean > 5.0 && !all.is_empty(), "{verdict}");
+    for one in all {
+        let change = one["change"].as_str().unwrap();
+        let row = run.stdout.lines().find(|line| line.trim_start().starts_with(change)).unwrap();
+        let [minutes, least] = ["minutes", "least_minutes"].map(|name| one[name].as_f64().unwrap());
+        assert!(least > weaker && minutes >= 5.0, "{one}");
+        assert_eq!(row.contains("; shorter for people of mean strength"), minutes < mean, "{row}");
+        assert!(!change.contains("less load") || minutes >= mean, "{row}");
+    }
+}

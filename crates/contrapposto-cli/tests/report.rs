@@ -46,6 +46,14 @@ fn the_title_of_a_lift_its_tile_and_its_text_have_one_load_and_the_terminal_name
         facts.filter(|fact| fact[0] == name).map(|fact| fact[1].as_str().unwrap()).collect::<Vec<_>>()
     };
     assert!(matches!(fact("Hazard")[..], [one] if one.starts_with("low back bent forward by 60°: ligaments carry ")));
+    assert!(fact("Hazard")[0].ends_with("; discs and discomfort are not judged"), "{:?}", fact("Hazard"));
+    let rows = page["changes"]["rows"].to_string();
+    assert!(rows.contains("\"low back bent forward by 60°\"") && !rows.contains("joint"), "{rows}");
+    let html = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    for words in ["about its axis", "that stands for this coordinate", "in the files", "minus passive"] {
+        assert!(!html.contains(words), "{words}");
+    }
+    assert!(html.contains("from 14 to\n        50&nbsp;% for minutes only"));
     let (load, who) = (verdict["hardest"]["load"].as_f64().unwrap(), &verdict["hardest"]["who"]);
     assert!(fact("Hardest worked")[0].contains(&format!(", {} of its strength", percent(load))));
     assert_eq!(figure(&page, "Highest load").unwrap()[0], percent(load));

@@ -181,6 +181,10 @@ fn a_weight_that_holds_for_a_while_fails_in_a_longer_run_at_the_time_and_in_the_
     let (_, longer, _) = run(&scenario);
     assert_eq!(longer.kind, VerdictKind::HeldUntil, "{}", longer.sentence);
     let fails = longer.seconds.unwrap();
+    let rows: Vec<&str> = longer.lines.iter().map(|line| line.name).collect();
+    assert_eq!(rows[..3], ["Fails first", "Hardest worked", "Most tired"]);
+    let first = format!(" of its strength), after {} (between ", how_long(fails));
+    assert!(longer.lines[0].text.starts_with("right elbow flexion (") && longer.lines[0].text.contains(&first));
     // The weaker fail before the end of the longest of these runs, and only the middle and the long one end tired.
     for (share, tired) in [(0.1, false), (0.6, true), (0.95, true)] {
         let seconds = (share * fails).round();
@@ -202,10 +206,15 @@ fn a_weight_that_holds_for_a_while_fails_in_a_longer_run_at_the_time_and_in_the_
             format!(", but in weaker people (one in six) right elbow flexion fails within {}.", how_long(least));
         assert_eq!(verdict.sentence.contains(&weaker), least < seconds, "{}", verdict.sentence);
         let end = verdict.tired.unwrap();
-        assert_eq!(
-            (end.fatigue > 0.5, verdict.in_words().contains("\nMost tired: right elbow flexion, ")),
-            (tired, tired)
+        assert_eq!(end.fatigue > 0.5, tired);
+        assert!(verdict.in_words().contains("\nMost tired: right elbow flexion, "), "{}", verdict.in_words());
+        assert!(verdict.in_words().contains("\nHardest worked: right elbow flexion, "), "{}", verdict.in_words());
+        let beyond = format!(
+            "; in weaker people (one in six) right elbow flexion only after {}, beyond the {} asked.",
+            how_long(least),
+            how_long(seconds)
         );
+        assert_eq!(verdict.in_words().contains(&beyond), least >= seconds, "{}", verdict.in_words());
         let first =
             format!(" of its strength), after about {} in all if the posture of the end is held on", how_long(fails));
         assert!(

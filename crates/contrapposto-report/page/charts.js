@@ -114,7 +114,7 @@ class Charts {
     }), CHART_CONFIG);
   }
 
-  // Active torque where the body is: its path over time, or in every posture the span from minus passive to external torque.
+  // Active torque where the body is: its path over time, or in every posture the span between the torque against the ligaments and that of weight and contact.
   activeTraces() {
     const joint = this.joint, angles = Array.from(joint.angle), line = chartLine("--path", 7);
     if (this.times) return [{ name: `${MUSCLES}, in this run`, x: angles, y: joint.active, line, hoverinfo: "skip" }];

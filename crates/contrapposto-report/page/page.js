@@ -196,17 +196,15 @@ function fillScale({ bands }, unit) {
 
 // The text below the heading of the torque balance.
 function balanceHint(joint) {
-  const about = " Angle and torques are those about the axis of the joint that stands for this coordinate.";
-  const axis = joint && joint.about_axis ? about : "";
-  const end = axis + (MOVES || SEVERAL ? " Large dots: now." : "");
+  const end = MOVES || SEVERAL ? " Large dots: now." : "";
   if (joint && joint.balance.some((balance) => balance.external.length)) {
-    return `Where the orange line (torque of weight and contact, “external” in the files) meets the blue one (what ligaments and relaxed tissue give against it, “minus passive”), ligaments carry the joint; ${MUSCLES} hold the difference.` + end;
+    return `Where the orange line (torque of weight and contact) meets the blue one (what ligaments and relaxed tissue give against it), ligaments carry the joint; ${MUSCLES} hold the difference.` + end;
   }
   const place = MOVES ? "where the body went" : SEVERAL ? "in each posture" : "in this posture";
   const passive = joint && joint.balance.length
-    ? `Where it meets the blue line (what ligaments and relaxed tissue give against it, “minus passive”), ligaments carry the joint; ${MUSCLES} hold the difference.`
+    ? `Where it meets the blue line (what ligaments and relaxed tissue give against it), ligaments carry the joint; ${MUSCLES} hold the difference.`
     : "The torque of its ligaments is not known.";
-  return `Orange: torque of weight and contact ${place} (“external” in the files). ${passive}${end}`;
+  return `Orange: torque of weight and contact ${place}. ${passive}${end}`;
 }
 
 // --- The page.
@@ -299,8 +297,8 @@ class Page {
     const share = joint.groups ? ` (${percent(joint.load[i])} of strength)` : "";
     const name = joint.label.charAt(0).toUpperCase() + joint.label.slice(1);
     const shown = (value) => value.toFixed(joint.slides ? 3 : 1).replace("-", "−") + (joint.slides ? " m" : "°");
-    const value = shown(joint.angle[i]) + (joint.about_axis ? " about its axis" : ""), differs = joint.coordinate && Math.abs(joint.coordinate[i] - joint.angle[i]) >= 0.05;
-    find("in-files").textContent = differs ? `In the files: ${joint.name} = ${shown(joint.coordinate[i])}, the coordinate of the model, which differs from the angle about the axis where the other axes of the joint are turned, too.` : joint.label === joint.name ? "" : `In the files: ${joint.name}.`;
+    const value = shown(joint.angle[i]), differs = joint.coordinate && Math.abs(joint.coordinate[i] - joint.angle[i]) >= 0.05;
+    find("in-files").textContent = differs ? `Name in the model: ${joint.name} = ${shown(joint.coordinate[i])}; the angle shown is that about the joint’s own axis, which differs where its other axes are turned, too.` : joint.label === joint.name ? "" : `Name in the model: ${joint.name}.`;
     const same = joint.external[i] * joint.passive[i] > 0;
     find("now").textContent = `${name}, ${value}: weight and contact pull with ${signed(joint.external[i])} ${joint.torque}, ` +
       `${same ? "ligaments pull the same way with" : "ligaments answer with"} ${signed(joint.passive[i])}, ${MUSCLES} ${same ? "answer " : ""}with ${signed(joint.active[i])}${share}.`;

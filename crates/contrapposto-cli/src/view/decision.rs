@@ -50,7 +50,7 @@ pub(crate) fn decision(model: &Model, event: &Event, frame: &Frame) -> String {
             let from = value(model, i, frame.angles[i]);
             let goal = decision.goal.map(|goal| value(model, i, goal)).unwrap_or_default();
             let answer = sentence(&answer(decision, &from, &goal));
-            format!("{name}: {tired}. {answer} (case {})", decision.case)
+            format!("{name}: {tired}. {answer}")
         }
         EventKind::Waits => {
             format!(

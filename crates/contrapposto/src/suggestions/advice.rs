@@ -10,6 +10,8 @@ use crate::verdict::{A_DAY, Line, Verdict, VerdictKind, has_motors};
 
 /// The sentence of a job with reserve.
 const NOTHING: &str = "Nothing needs to change";
+/// The name of the column of the job where no change stands below it.
+const AS_IT_IS: &str = "The job";
 /// The changes of a job that were tried.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Advice {
@@ -17,7 +19,7 @@ pub struct Advice {
     pub helping: Vec<Suggestion>,
     /// Suggestions that were not tried because the budget was used up, in words.
     pub not_tried: Vec<String>,
-    /// The suggestions that help beside the job as it is; without rows where there are none.
+    /// The suggestions that help beside the job as it is; the job alone where there are none, without rows where it cannot be done.
     pub gains: Gains,
     /// The largest loads of the job, where they were searched for.
     pub largest: Option<LargestLoad>,
@@ -52,7 +54,8 @@ impl Advice {
             } else {
                 ""
             };
-            return Self { notes: vec![format!("{NOTHING}{about}{who}.")], ..Self::default() };
+            let gains = Gains::new(job.model, AS_IT_IS, verdict, &[]);
+            return Self { gains, notes: vec![format!("{NOTHING}{about}{who}.")], ..Self::default() };
         }
         if let Some(why) = out_of_reach(verdict) {
             return Self { notes: vec![why.to_owned()], ..Self::default() };
@@ -65,12 +68,13 @@ impl Advice {
         let all: Vec<Suggestion> = changes.iter().zip(&trials).filter_map(suggestion).chain(known()).collect();
         let tried: Vec<String> = all.iter().map(|one| one.change.clone()).collect();
         let helping = Suggestion::that_help(all, verdict);
-        let gains = if helping.is_empty() {
-            Gains::default()
-        } else {
-            Gains::new(job.model, heading(verdict, &helping), verdict, &helping)
+        let gains = match helping.is_empty() {
+            true if !verdict.kind.is_done() || verdict.hardest.is_none() => Gains::default(),
+            true => Gains::new(job.model, AS_IT_IS, verdict, &[]),
+            false => Gains::new(job.model, heading(verdict, &helping), verdict, &helping),
         };
-        let notes = notes(verdict, &helping, &tried, &not_tried);
+        let too_little = too_little(verdict, &helping).filter(|_| !has_motors(job.model));
+        let notes = too_little.into_iter().chain(notes(verdict, &helping, &tried, &not_tried)).collect();
         Self { helping, not_tried, gains, largest: None, notes }
     }
 }
@@ -115,6 +119,17 @@ fn notes(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tried:
         _ if hazard_stays(verdict, helping) => Some(format!("No change that was tried ends every hazard.{others}")),
         _ => None,
     };
-    let left = (!not_tried.is_empty()).then(|| format!("Not tried: {}.", not_tried.join("; ")));
+    let left = (!not_tried.is_empty())
+        .then(|| format!("Not tried, as the solver steps for trials were used up: {}.", not_tried.join("; ")));
     of_all.into_iter().chain(left).collect()
+}
+
+/// Says that no change that helps lets people go on for the asked time: those of mean strength, or only weaker ones.
+fn too_little(verdict: &Verdict, helping: &[Suggestion]) -> Option<String> {
+    let asked = helping.first()?.asked?;
+    let enough = |one: &Suggestion| one.kind == VerdictKind::Holds;
+    let for_weaker = |one: &Suggestion| one.least.is_none_or(|least| one.reaches(least));
+    let people = if helping.iter().any(enough) { "weaker people" } else { "people of mean strength" };
+    let lacks = !helping.iter().any(for_weaker) && verdict.least.is_none_or(|least| least < asked);
+    lacks.then(|| format!("No single change that was tried suffices for {people}."))
 }

@@ -112,8 +112,10 @@ fn suggestion(verdict: &Verdict, asked: f64, (first, longest): (f64, f64), least
         seconds: (first < longest).then_some(first),
         least: Some(if least < longest { least } else { f64::INFINITY }),
         hazards: verdict.hazards.len(),
+        hazard: None,
         hands: verdict.hands.len(),
         load: verdict.hardest.map(|group| group.load),
+        lighter: false,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Says what the changes of a job give, as a table: the times without and with each of them.
 
-use super::trial::Suggestion;
+use super::trial::{Suggestion, hazards_in_words};
 use crate::model::Model;
 use crate::verdict::{A_DAY, Verdict, VerdictKind, has_motors, how_long};
 
@@ -21,13 +21,15 @@ pub struct Gains {
 }
 
 /// A job as it is, or with a change.
-struct Row<'a> {
-    change: &'a str,
+struct Row {
+    change: String,
     kind: VerdictKind,
     asked: Option<f64>,
     seconds: Option<f64>,
     least: Option<f64>,
     hazards: usize,
+    /// The postures in hazard, in words.
+    hazard: String,
     hands: usize,
 }
 
@@ -35,25 +37,27 @@ impl Gains {
     /// The table of changes that help the job with this verdict.
     pub(super) fn new(model: &Model, heading: &str, before: &Verdict, helping: &[Suggestion]) -> Self {
         let as_it_is = Row {
-            change: "as it is",
+            change: "as it is".to_owned(),
             kind: before.kind,
             // A run that settled before its end is beside the same time as its changes.
             asked: helping.first().map_or(before.asked, |one| one.asked),
             seconds: before.seconds,
             least: before.least,
             hazards: before.hazards.len(),
+            hazard: hazards_in_words(model, before),
             hands: before.hands.len(),
         };
-        let rows: Vec<Row<'_>> = std::iter::once(as_it_is).chain(helping.iter().map(Row::from)).collect();
-        let (hazards, hands) = (rows.iter().any(|row| row.hazards > 0), rows.iter().any(|row| row.hands > 0));
         let people = !has_motors(model);
+        let with = |one| Row::new(one, (model, before), people);
+        let rows: Vec<Row> = std::iter::once(as_it_is).chain(helping.iter().map(with)).collect();
+        let (hazards, hands) = (rows.iter().any(|row| row.hazards > 0), rows.iter().any(|row| row.hands > 0));
         let mut columns = vec![heading];
         columns.extend_from_slice(if people { &OF_PEOPLE } else { &["lasts"] });
         let at_end = if before.asked.is_some() { "hazard for ligaments at the end" } else { "hazard for ligaments" };
         columns.extend(hazards.then_some(at_end));
         columns.extend(hands.then_some("strength of the grip"));
-        let cells = |row: &Row<'_>| {
-            let mut cells = vec![row.change.to_owned(), row.time()];
+        let cells = |row: &Row| {
+            let mut cells = vec![row.change.clone(), row.time()];
             cells.extend(people.then(|| row.time_of_weaker()));
             cells.extend(hazards.then(|| row.hazards_in_words()));
             cells.extend(hands.then(|| row.grip_in_words()));
@@ -63,21 +67,28 @@ impl Gains {
     }
 }
 
-impl<'a> From<&'a Suggestion> for Row<'a> {
-    fn from(with: &'a Suggestion) -> Self {
+impl Row {
+    /// A change; where somebody holds out for less time with it, that is said beside it.
+    fn new(with: &Suggestion, (model, before): (&Model, &Verdict), people: bool) -> Self {
+        let shorter = match with.shortens(before) {
+            [true, true] if people => "; shorter for everybody",
+            [true, _] if people => "; shorter for people of mean strength",
+            [_, true] if people => "; shorter for weaker people",
+            [true, _] => "; shorter",
+            _ => "",
+        };
         Self {
-            change: &with.change,
+            change: with.change.clone() + shorter,
             kind: with.kind,
             asked: with.asked,
             seconds: with.seconds,
             least: with.least,
             hazards: with.hazards,
+            hazard: with.hazard.clone().unwrap_or_else(|| hazards_in_words(model, before)),
             hands: with.hands,
         }
     }
-}
 
-impl Row<'_> {
     /// `6.5 min`, `2.0 min, too short`, `no limit`, or the reason for which it cannot be done.
     fn time(&self) -> String {
         match self.kind {
@@ -119,13 +130,12 @@ impl Row<'_> {
         }
     }
 
-    /// `none`, `1 joint`, `2 joints`, or that nobody judged a body that falls.
+    /// `none`, `low back bent forward by 52°`, or that nobody judged a body that falls.
     fn hazards_in_words(&self) -> String {
         match self.hazards {
             0 if self.kind == VerdictKind::CannotStand => NOT_JUDGED.to_owned(),
             0 => "none".to_owned(),
-            1 => "1 joint".to_owned(),
-            joints => format!("{joints} joints"),
+            _ => self.hazard.clone(),
         }
     }
 }

@@ -3,9 +3,10 @@
 use super::budget::Trial;
 use super::change::{Change, Job};
 use crate::equilibria::{Search, SearchError, equilibria};
+use crate::model::Model;
 use crate::posture_solver::Options;
 use crate::simulation::{Run, Scenario, ScenarioError, StopReason};
-use crate::verdict::{Verdict, VerdictKind};
+use crate::verdict::{Verdict, VerdictKind, how_long};
 
 /// A time counts as longer from this factor on.
 const LONGER: f64 = 1.05;
@@ -26,10 +27,14 @@ pub struct Suggestion {
     pub least: Option<f64>,
     /// Number of coordinates that ligaments carry in hazard at the end.
     pub hazards: usize,
+    /// These postures in words, `low back bent forward by 52°`; `None` of breaks, in which they are those of the job.
+    pub hazard: Option<String>,
     /// Number of hands that hold half of the strength of their grip or more.
     pub hands: usize,
     /// Load of the hardest worked group.
     pub load: Option<f64>,
+    /// The change is less load.
+    pub lighter: bool,
 }
 
 /// Runs a scenario with a change in one thread until a group needs more than its strength or fails, or a target is missed, or to its end, and judges
@@ -93,6 +98,12 @@ fn times(seconds: Option<f64>, least: Option<f64>) -> (f64, f64) {
     (seconds.unwrap_or(f64::INFINITY), least.unwrap_or(f64::INFINITY))
 }
 
+/// The postures of all coordinates in hazard, in words.
+pub(super) fn hazards_in_words(model: &Model, verdict: &Verdict) -> String {
+    let all: Vec<String> = verdict.hazards.iter().map(|hazard| hazard.posture_in_words(model)).collect();
+    all.join(", ")
+}
+
 impl Suggestion {
     /// A change that leads to a verdict.
     pub fn new(job: &Job<'_>, change: &Change, verdict: &Verdict) -> Self {
@@ -103,13 +114,15 @@ impl Suggestion {
             seconds: verdict.seconds,
             least: verdict.least,
             hazards: verdict.hazards.len(),
+            hazard: Some(hazards_in_words(job.model, verdict)),
             hands: verdict.hands.len(),
             load: verdict.hardest.map(|group| group.load),
+            lighter: matches!(change, Change::Loads(_)),
         }
     }
 
     /// Whether people with that least time, s, reach the asked one; where none is asked nobody does.
-    fn reaches(&self, least: f64) -> bool {
+    pub(super) fn reaches(&self, least: f64) -> bool {
         self.asked.is_some_and(|asked| least >= asked)
     }
 
@@ -118,26 +131,44 @@ impl Suggestion {
         self.hazards + self.hands
     }
 
+    /// Whether people of mean strength, and weaker ones, hold the job for less time than without the change, as times are shown; of a job that can
+    /// be done.
+    pub(super) fn shortens(&self, before: &Verdict) -> [bool; 2] {
+        if !before.kind.is_done() {
+            return [false; 2];
+        }
+        let (mean, weaker) = times(self.seconds, self.least);
+        let (mean_before, weaker_before) = times(before.seconds, before.least);
+        let shorter = |after: f64, before: f64| after < before && how_long(after) != how_long(before);
+        [shorter(mean, mean_before), shorter(weaker, weaker_before)]
+    }
+
+    /// Whether the change answers what is open: of a job that only weaker people do not hold, their time is longer; of another one that of people of
+    /// mean strength, or, where no muscle limits these, that of weaker people.
+    fn is_longer(&self, before: &Verdict) -> bool {
+        let (after, least_after) = times(self.seconds, self.least);
+        let (mean_before, least_before) = times(before.seconds, before.least);
+        let of_weaker = least_after > LONGER * least_before;
+        let weaker_lack = before.kind == VerdictKind::Holds && self.asked.is_some() && !self.reaches(least_before);
+        if weaker_lack { of_weaker } else { after > LONGER * mean_before || after.is_infinite() && of_weaker }
+    }
+
     /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards and
-    /// hands with much weight or for longer. Where no muscle limits the mean person before or after, and where only weaker people do
-    /// not reach the asked time, it is longer for these. A change with fewer hazards with which weaker people no longer reach the asked
-    /// time does not help. Of those that are equally safe the ones come first with which weaker people reach the asked time.
+    /// hands with much weight or for longer ([`Self::is_longer`]). A change with which weaker people no longer reach the asked time does not help,
+    /// nor does less load with which somebody holds out for less time: the search has ended in another posture. Of those that are equally safe the
+    /// ones come first with which weaker people reach the asked time.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
-        let (before, least_before) = times(verdict.seconds, verdict.least);
-        let longer = |one: &Self| {
-            let (after, least_after) = times(one.seconds, one.least);
-            // Of a job that only weaker people do not hold their time counts.
-            let weaker_lack = verdict.kind == VerdictKind::Holds && one.asked.is_some() && !one.reaches(least_before);
-            let of_weaker = weaker_lack || after.is_infinite();
-            after > LONGER * before || (of_weaker && least_after > LONGER * least_before)
-        };
-        // An end of a hazard is no help to those who no longer reach the asked time for it.
+        let (_, least_before) = times(verdict.seconds, verdict.least);
         let keeps = |one: &Self| !one.reaches(least_before) || one.reaches(times(one.seconds, one.least).1);
-        let safer = |one: &Self| one.risks() < verdict.risks() && keeps(one);
+        let safer = |one: &Self| one.risks() < verdict.risks();
         let equally_safe = |one: &Self| one.risks() == verdict.risks();
-        let better = |one: &Self| safer(one) || equally_safe(one) && longer(one);
-        let helps =
-            |one: &Self| one.kind.is_done() && (one.kind > verdict.kind || one.kind == verdict.kind && better(one));
+        let better = |one: &Self| safer(one) || equally_safe(one) && one.is_longer(verdict);
+        let another_posture = |one: &Self| one.lighter && one.shortens(verdict).contains(&true);
+        let helps = |one: &Self| {
+            one.kind.is_done()
+                && (one.kind > verdict.kind || one.kind == verdict.kind && better(one) && keeps(one))
+                && !another_posture(one)
+        };
         all.retain(helps);
         all.sort_by(|a, b| {
             let ((time_a, least_a), (time_b, least_b)) = (times(a.seconds, a.least), times(b.seconds, b.least));

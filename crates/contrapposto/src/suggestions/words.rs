@@ -45,8 +45,12 @@ impl Change {
                 let less = format!("{:.0}\u{a0}% less load", 100.0 * (1.0 - share));
                 loads_in_words(job, *share).map_or_else(|| less.clone(), |loads| format!("{less} ({loads})"))
             }
-            Self::Strategy(Strategy::Active) => "relief by the active strategy instead of the passive one".to_owned(),
-            Self::Strategy(Strategy::Passive) => "relief by the passive strategy instead of the active one".to_owned(),
+            Self::Strategy(Strategy::Active) => {
+                "tired joints moved back to the middle of their range instead of leaning on ligaments".to_owned()
+            }
+            Self::Strategy(Strategy::Passive) => {
+                "tired joints left to lean on ligaments instead of moving back to the middle of their range".to_owned()
+            }
             Self::OtherFoot => match job.feet() {
                 Some([ahead, behind]) => format!("feet exchanged: the {behind} ahead instead of the {ahead}"),
                 None => "the other foot ahead".to_owned(),

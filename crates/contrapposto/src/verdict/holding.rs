@@ -64,16 +64,18 @@ impl GroupAtEnd<'_> {
 
 impl Findings {
     /// Takes in how long the posture of the end could be held on; `span` is the start and the end of the job, s. Of a job in which a group
-    /// fails only the least time.
+    /// fails only the least time and the most tired group.
     pub(super) fn take_end(&mut self, groups: &[GroupAtEnd<'_>], span: (f64, f64)) {
         let later: Vec<Failure> = groups.iter().filter_map(|group| group.failure(span)).collect();
         self.least = Some(least(later.iter().chain(&self.fails)));
-        if self.fails.is_some() {
-            return;
-        }
-        self.later = later;
         let most = groups.iter().max_by(|a, b| a.fatigue.total_cmp(&b.fatigue));
-        self.tired =
-            most.map(|group| Tired { who: group.who, fatigue: group.fatigue, lasts: group.seconds_left.is_none() });
+        let holds = self.fails.is_none();
+        self.tired = most.map(|group| {
+            let lasts = holds && group.seconds_left.is_none();
+            Tired { who: group.who, fatigue: group.fatigue, lasts }
+        });
+        if holds {
+            self.later = later;
+        }
     }
 }

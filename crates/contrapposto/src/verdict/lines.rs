@@ -9,6 +9,9 @@ use crate::model::{Model, movements_in_words};
 /// Load below which no muscle counts as working: half of the last digit that is shown. Derived.
 const NO_WORK: f64 = 0.005;
 
+/// Said beside hazards that are known, and where none is.
+const NOT_JUDGED: &str = "discs and discomfort are not judged";
+
 /// A finding behind a verdict.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
@@ -35,8 +38,8 @@ impl Findings {
         let mut line = |name: &'static str, text: Option<String>| {
             lines.extend(text.map(|text| Line { name, text: muscles_or_motors(model, &text) }));
         };
-        if kind == VerdictKind::Holds && !has_no_strength(model) {
-            line("Fails first", self.fails_first(model));
+        if kind.is_done() && !has_no_strength(model) {
+            line("Fails first", self.fails_first(model, kind));
             line("Hardest worked", self.hardest_worked(model));
             line("Most tired", self.most_tired(model));
         }
@@ -66,19 +69,39 @@ impl Findings {
         self.hardest.map(|(group, _)| group).filter(|group| group.load >= NO_WORK)
     }
 
-    /// `right shoulder flexion (16 % of its strength), after about 6.6 min in all if the posture of the end is held on (...)`.
-    fn fails_first(&self, model: &Model) -> Option<String> {
+    /// `right shoulder flexion (16 % of its strength), after about 6.6 min in all if the posture of the end is held on (...)`; of a job that is not held
+    /// to its end `..., after 7.1 min (...)`.
+    fn fails_first(&self, model: &Model, kind: VerdictKind) -> Option<String> {
         self.asked?;
-        if let Some(Failure { who, time, range }) = self.fails_later().filter(|failure| failure.time < A_DAY) {
+        let first = match kind {
+            VerdictKind::HeldUntil => self.fails.as_ref(),
+            _ => self.fails_later().filter(|failure| failure.time < A_DAY),
+        };
+        if let Some(Failure { who, time, range }) = first {
             let (load, name) = (percent(who.load), who.name(model));
             let (time, range) = (how_long(*time), in_words(*range));
-            return Some(format!("{name} ({load} of its strength), after about {time} in all {} ({range})", self.on()));
+            if kind == VerdictKind::HeldUntil {
+                return Some(format!("{name} ({load} of its strength), after {time} ({range})"));
+            }
+            let weaker = self.of_weaker_beyond(model).map_or_else(String::new, |weaker| format!("; {weaker}"));
+            let on = self.on();
+            return Some(format!("{name} ({load} of its strength), after about {time} in all {on} ({range}){weaker}"));
         }
         let Some(Failure { who, range: (least, _), .. }) = self.weakest() else {
             return (!self.later.is_empty()).then(|| format!("no muscle, {}", self.on()));
         };
-        let (who, least) = (who.name(model), how_long(*least));
-        Some(format!("no muscle of a person of mean strength; in weaker people (one in six) {who} within {least}"))
+        let of_weaker = self.of_weaker_beyond(model).unwrap_or_else(|| {
+            let (who, least) = (who.name(model), how_long(*least));
+            format!("in weaker people (one in six) {who} within {least}")
+        });
+        Some(format!("no muscle of a person of mean strength; {of_weaker}"))
+    }
+
+    /// `in weaker people (one in six) right hip extension only after 48.6 min, beyond the 20.0 min asked`; `None` where it fails before, or never.
+    fn of_weaker_beyond(&self, model: &Model) -> Option<String> {
+        let (asked, Failure { who, range: (least, _), .. }) = (self.asked?, self.weakest()?);
+        let (who, after, asked) = (who.name(model), how_long(*least), (*least >= asked).then(|| how_long(asked))?);
+        Some(format!("in weaker people (one in six) {who} only after {after}, beyond the {asked} asked"))
     }
 
     /// The job after its end.
@@ -87,7 +110,6 @@ impl Findings {
     }
 
     /// `right hip extension, 17 % of its strength; it fails later, after about 32 min`, or `..., 17 % of its strength at 7.9 min (11 % at the end)`.
-    /// `None` where the sentence has said it all.
     fn hardest_worked(&self, model: &Model) -> Option<String> {
         let time = self.hardest?.1;
         let group = self.hardest_load()?;
@@ -111,17 +133,14 @@ impl Findings {
             _ if self.repeats.is_some() => "; it does not fail, however long it goes on".to_owned(),
             _ => "; it does not fail at its load of the end".to_owned(),
         });
-        if self.fails_weaker().is_none() && end.is_none() && fails.is_none() {
-            return None;
-        }
         let name = Who::from(group).name(model);
         Some(format!("{name}, {greatest} of its strength{}{}", end.unwrap_or_default(), fails.unwrap_or_default()))
     }
 
     /// `right shoulder flexion, 82 % at the end (at 100 % it fails)`.
     fn most_tired(&self, model: &Model) -> Option<String> {
-        let tired = self.tired.filter(|tired| tired.fatigue > TIRED)?;
-        let lasts = match (tired.lasts, self.repeats) {
+        let tired = self.tired.filter(|tired| tired.fatigue >= NO_WORK)?;
+        let lasts = match (tired.lasts && tired.fatigue > TIRED, self.repeats) {
             (false, _) => "",
             (true, Some(_)) => "; it does not fail, however long it goes on",
             (true, None) => "; at its load it becomes no more tired",
@@ -160,7 +179,9 @@ impl Findings {
             told.push(&hazard.row.finding);
             format!("{}{long}{finding}{limit}{shorter}", hazard.in_words(model))
         };
-        now.chain(over).map(in_words).collect()
+        let mut all: Vec<String> = now.chain(over).map(in_words).collect();
+        all.last_mut().into_iter().for_each(|last| *last += &format!("; {NOT_JUDGED}"));
+        all
     }
 
     /// `none is known for the ligaments of low back, knees and hips at these angles; discs and discomfort are not judged`; `None` where nothing is
@@ -171,7 +192,7 @@ impl Findings {
         let known = none && !parts.is_empty() && !has_no_strength(model);
         known.then(|| {
             let parts = enumerated(&parts);
-            format!("none is known for the ligaments of {parts} at these angles; discs and discomfort are not judged")
+            format!("none is known for the ligaments of {parts} at these angles; {NOT_JUDGED}")
         })
     }
 

@@ -157,7 +157,7 @@ pub struct Verdict {
     pub who: Option<Who>,
     /// The group with the greatest load.
     pub hardest: Option<Who>,
-    /// Of a run that holds, the group with the greatest fatigue at the end.
+    /// Of a run that can be done, the group with the greatest fatigue at the end.
     pub tired: Option<Tired>,
     /// Of a run that holds, the group that fails before its end in people whose strength is one standard deviation below the mean, or
     /// by another published law.

@@ -8,7 +8,7 @@ use crate::view::answer::{Answer, group_of_title};
 use crate::view::axes::pelvis_list;
 use crate::view::excerpt::RunExcerpt;
 use crate::view::frame::Frame;
-use crate::view::muscles::{hardest_of_run, tired};
+use crate::view::muscles::{hardest_of_run, tired, working};
 use crate::view::selection::main_coordinate;
 use crate::view::words::{how_long, percent, plain, sentence, value};
 
@@ -111,20 +111,19 @@ impl Narrative<'_> {
         let [from, to] =
             [self.first, self.last].map(|frame| value(&self.scenario.model, self.main, frame.angles[self.main]));
         let [before, after] = [self.first, self.last].map(|frame| frame.active(self.main).abs());
-        let axis = self.about_axis();
+        let who = self.muscles();
         if self.moved().abs() < STAYED {
             let verb = if self.swept < STAYED { "stayed at" } else { "ended where it began, at" };
-            return format!("{name} {verb} {to}{axis}: its muscles hold {after:.1} N m.");
+            return format!("{name} {verb} {to}: {who} hold {after:.1} N m.");
         }
         let verb = if after > before { "more" } else { "less" };
-        format!(
-            "{name} moved from {from} to {to}{axis}: its muscles hold {verb}, {after:.1} N m instead of {before:.1}."
-        )
+        format!("{name} moved from {from} to {to}: {who} hold {verb}, {after:.1} N m instead of {before:.1}.")
     }
 
-    /// The name of the angle of a joint of three axes.
-    fn about_axis(&self) -> &'static str {
-        if self.scenario.model.three_axis_joint_of(self.main).is_some() { " about its axis" } else { "" }
+    /// `the muscles of right hip extension`: the group that works at the end, by the name that rows have for it.
+    fn muscles(&self) -> String {
+        let group = working(&self.scenario.model, self.main, self.last);
+        group.map_or_else(|| "its muscles".to_owned(), |group| format!("the muscles of {group}"))
     }
 
     fn moved(&self) -> f64 {
@@ -153,9 +152,9 @@ impl Narrative<'_> {
             let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.angles[main]));
             let [before, after] = [first, last].map(|frame| frame.active(main).abs());
             reasons.push(format!(
-                "{} moved from {from} to {to}{}; its muscles hold {after:.1} N m, at the start {before:.1}.",
+                "{} moved from {from} to {to}; {} hold {after:.1} N m, at the start {before:.1}.",
                 sentence(&name),
-                self.about_axis()
+                self.muscles()
             ));
         }
         reasons.extend(self.of_ligaments());
