@@ -10,7 +10,7 @@ use crate::model::{Model, movements_in_words};
 const NO_WORK: f64 = 0.005;
 
 /// Said beside hazards that are known, and where none is.
-const NOT_JUDGED: &str = "discs and discomfort are not judged";
+const ALSO_NOT_JUDGED: &str = "discs and discomfort are not judged";
 
 /// A finding behind a verdict.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -180,7 +180,7 @@ impl Findings {
             format!("{}{long}{finding}{limit}{shorter}", hazard.in_words(model))
         };
         let mut all: Vec<String> = now.chain(over).map(in_words).collect();
-        all.last_mut().into_iter().for_each(|last| *last += &format!("; {NOT_JUDGED}"));
+        all.last_mut().into_iter().for_each(|last| *last += &format!("; {ALSO_NOT_JUDGED}"));
         all
     }
 
@@ -192,7 +192,7 @@ impl Findings {
         let known = none && !parts.is_empty() && !has_no_strength(model);
         known.then(|| {
             let parts = enumerated(&parts);
-            format!("none is known for the ligaments of {parts} at these angles; {NOT_JUDGED}")
+            format!("none is known for the ligaments of {parts} at these angles; {ALSO_NOT_JUDGED}")
         })
     }
 
