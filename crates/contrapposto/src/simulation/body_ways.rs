@@ -70,7 +70,8 @@ impl BodyMotion<'_> {
             aim: Aim::Least(&[]),
         };
         let locked: Vec<usize> = self.scenario.locked_rates().collect();
-        let budget = Budget { scattered: SCATTERED_STARTS, work: SEARCH_BUDGET_OF_STEP, carriers_stay: false };
+        let work = SEARCH_BUDGET_OF_STEP / 8;
+        let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: false };
         let Searched { found, minima, work, cut } = search(self.scenario, now, &self.supports, &locked, budget).ok()?;
         let stands = found.into_iter().find(|found| found.relaxed.slip.length() <= MOST_SLIP)?;
         Some(Searched { found: stands.relaxed.posture, minima, work, cut })
