@@ -91,7 +91,8 @@ impl RelaxedPosture {
 pub struct Equilibria {
     /// Different postures, that of least effort first.
     pub postures: Vec<RelaxedPosture>,
-    /// Different local minima near explored postures, that of least effort first, [`MOST_MINIMA`] at most.
+    /// Different local minima for a later search of the same body, twelve at most: those found, then others near explored postures, each from that of
+    /// least effort on.
     pub minima: Vec<Posture>,
     /// Number of starts.
     pub starts: usize,
