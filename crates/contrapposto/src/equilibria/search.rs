@@ -37,10 +37,9 @@ pub struct Search<'a> {
 }
 
 /// The postures that a search is for.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub enum Aim<'a> {
     /// All different ways to stand.
-    #[default]
     Ways,
     /// The posture of least effort. Where local minima of an earlier search of the same body are given, they are the starts, besides all goals of
     /// each strategy together.

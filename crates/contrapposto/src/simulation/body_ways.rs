@@ -70,6 +70,7 @@ impl BodyMotion<'_> {
             aim: Aim::Least(&[]),
         };
         let locked: Vec<usize> = self.scenario.locked_rates().collect();
+        // An eighth of the usual work (assumed): a scenario that cannot stand is answered within a second.
         let work = SEARCH_BUDGET_OF_STEP / 8;
         let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: false };
         let Searched { found, minima, work, cut } = search(self.scenario, now, &self.supports, &locked, budget).ok()?;

@@ -154,7 +154,7 @@ impl Suggestion {
     }
 
     /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards and
-    /// hands with much weight or for longer ([`Self::is_longer`]). A change with which weaker people no longer reach the asked time does not help,
+    /// hands with much weight or for longer. A change with which weaker people no longer reach the asked time does not help,
     /// nor does less load with which somebody holds out for less time: the search has ended in another posture. Of those that are equally safe the
     /// ones come first with which weaker people reach the asked time.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
