@@ -3,7 +3,7 @@
 
     python3 -m venv venv && venv/bin/pip install ezc3d==1.7.2 c3d==0.6.0 numpy
     venv/bin/python scripts/c3d_peer.py FOLDER
-    CONTRAPPOSTO_C3D=FOLDER cargo test -p contrapposto-formats --test c3d -- --ignored --nocapture
+    CONTRAPPOSTO_C3D=FOLDER cargo test -p contrapposto-formats c3d -- --ignored --nocapture
 
 FOLDER holds files that are not a part of this project, such as Input/C3DSamples of the repository Biomechanical-ToolKit/BTKData. Beside each one
 comes NAME.points: the unit and the reader, the labels, and a row for each frame: time in s, and x, y, z of each point in the file's unit, NaN for gaps.
@@ -11,7 +11,7 @@ NAME.forces, of files with force plates that ezc3d reads: a row for each analog 
 each plate in the axes of the laboratory. ezc3d takes POINT:UNITS for the length in moments. Its moments of type 1 are left out: they are those of the centre of
 pressure and the couple, from which they are computed here.
 
-    CONTRAPPOSTO_C3D=FOLDER cargo test -p contrapposto-formats --test force_plates -- --ignored --nocapture
+    CONTRAPPOSTO_C3D=FOLDER cargo test -p contrapposto-formats force_plates -- --ignored --nocapture
 """
 
 import pathlib

@@ -82,6 +82,24 @@ mod tests {
         assert!(LIST.lines().all(|line| parts(line).is_some()), "a reason reads `needs THING: why`");
     }
 
+    /// A file of tests that the test program of its crate does not name would never run.
+    #[test]
+    fn test_programs_name_every_file_beside_them() {
+        let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+        let mut programs = 0;
+        for folder in std::fs::read_dir(crates).unwrap().map(|entry| entry.unwrap().path().join("tests")) {
+            let Ok(program) = std::fs::read_to_string(folder.join("main.rs")) else { continue };
+            for path in std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()) {
+                let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+                let is_module = path.extension().is_some_and(|end| end == "rs") || path.join("mod.rs").is_file();
+                let named = name == "main" || program.lines().any(|line| line == format!("mod {name};"));
+                assert!(!is_module || named, "{}: `mod {name};` is missing", folder.join("main.rs").display());
+            }
+            programs += 1;
+        }
+        assert!(programs >= 3, "{programs}");
+    }
+
     /// Names in back quotes that look like those of tests: words joined by underscores, three words or more.
     fn tests_named_in(line: &str) -> Vec<&str> {
         let quoted = line.split('`').skip(1).step_by(2);

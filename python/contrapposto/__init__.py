@@ -14,7 +14,7 @@ from contrapposto import interop
 from contrapposto._native import __version__
 from contrapposto.engine import Engine
 from contrapposto.errors import ContrappostoError, InputError, InternalError, JobError
-from contrapposto.jobs import minimize, pose, relax, simulate
+from contrapposto.jobs import example, minimize, pose, relax, simulate
 from contrapposto.loads import Force, Weight
 from contrapposto.model import Model
 from contrapposto.motions import assess
@@ -43,6 +43,7 @@ __all__ = [
     "Weight",
     "__version__",
     "assess",
+    "example",
     "interop",
     "minimize",
     "muscles",

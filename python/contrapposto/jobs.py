@@ -16,6 +16,19 @@ from contrapposto._results import Equilibria, Pose, Record, Run
 Scenario: TypeAlias = str | os.PathLike[str] | Mapping[str, Any]
 
 
+def example(name: str) -> str:
+    """The text (TOML) of a scenario that comes with the package, by its name in the folder `scenarios` of the repository: a job to
+    begin with.
+
+    >>> print(contrapposto.simulate(contrapposto.example("figure-08")).verdict.kind)
+    holds
+    """
+    texts = dict(_native.examples())
+    if name not in texts:
+        raise InputError(f"no example has the name `{name}`; there are {', '.join(texts)}")
+    return texts[name]
+
+
 def pose(scenario: Scenario) -> Pose:
     """Solves one posture from tasks in strict order of priority, as `contrapposto pose`."""
     return Pose._run(_native.Job.run, "pose", *source_of(scenario), False)

@@ -120,6 +120,16 @@ def test_a_text_and_a_dictionary_give_the_same_as_the_file(results: dict[str, Re
     assert contrapposto.simulate(text).q.tobytes() == results["simulate"].q.tobytes()
 
 
+def test_the_examples_are_the_scenarios_of_the_repository_that_need_no_other_file() -> None:
+    files = {path.stem: path.read_text(encoding="utf-8") for path in (REPOSITORY / "scenarios").glob("*.toml")}
+    needing_none = {name: text for name, text in files.items() if "file = " not in text}
+    assert len(needing_none) > 20
+    for name, text in needing_none.items():
+        assert contrapposto.example(name) == text
+    with pytest.raises(InputError, match="no example has the name `bus`; there are bus-stop, chatter, "):
+        contrapposto.example("bus")
+
+
 def test_texts_of_dictionaries_and_odd_names_arrive_as_they_are(tmp_path: Path) -> None:
     title = 'a "tool" \\ 🧍 ü'
     words = {"format": 1, "title": title, "run": {"duration_s": 1}, "strategy": {"kind": "active"}}

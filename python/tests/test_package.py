@@ -7,9 +7,13 @@ import signal
 import subprocess
 import sys
 import time
+import urllib.request
 from pathlib import Path
 
+import pytest
+
 import contrapposto
+from contrapposto._program import arguments
 
 
 def time_to_interrupt() -> float:
@@ -41,8 +45,7 @@ def test_ctrl_c_raises_keyboard_interrupt_within_a_fifth_of_a_second() -> None:
 
 def test_the_program_of_the_package_shows_its_version_and_refuses_bad_words() -> None:
     def run(*words: str) -> subprocess.CompletedProcess[str]:
-        code = "from contrapposto._program import main; main()"
-        return subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True)
+        return subprocess.run([sys.executable, "-m", "contrapposto", *words], capture_output=True, text=True)
 
     assert run("--version").stdout == f"contrapposto {contrapposto.__version__}\n"
     assert run("--nonsense").returncode == 2
@@ -63,3 +66,31 @@ def test_importing_takes_less_than_50_ms_beside_numpy() -> None:
     code = "import numpy, time; start = time.process_time(); import contrapposto; print(time.process_time() - start)"
     times = [float(subprocess.check_output([sys.executable, "-c", code])) for _ in range(3)]
     assert min(times) < 0.05, times
+
+
+def test_the_studio_of_the_package_serves_the_page_that_it_carries() -> None:
+    page = Path(contrapposto.__file__).parent / "page"
+    expected = os.environ.get("CONTRAPPOSTO_EXPECT_PAGE") == "1"
+    if not page.is_dir() and not expected:
+        pytest.skip("this package was built without the page of the studio (web/dist)")
+    code = "from contrapposto._program import main; main()"
+    words = ["studio", "--no-browser"]
+    server = subprocess.Popen([sys.executable, "-c", code, *words], stdout=subprocess.PIPE, text=True)
+    try:
+        assert server.stdout is not None
+        address = server.stdout.readline().strip()
+        assert address.startswith("http://127.0.0.1:"), address
+        for name in ("index.html", *(f"assets/{file.name}" for file in (page / "assets").glob("*.wasm"))):
+            with urllib.request.urlopen(address + name) as answer:
+                assert answer.read() == (page / name).read_bytes(), name
+        assert list((page / "assets").glob("*.wasm"))
+    finally:
+        server.kill()
+        server.wait()
+
+
+def test_words_that_name_a_page_stay_as_they_are() -> None:
+    named = ["studio", "job.toml", "--page", "dist"]
+    assert arguments(named) == named
+    assert arguments(["studio", "--page=dist"]) == ["studio", "--page=dist"]
+    assert arguments(["demo"]) == ["demo"]

@@ -116,6 +116,16 @@ def test_a_nan_names_row_coordinate_value_unit_and_limit(woman: Model, random_po
         woman.gradient(q)
 
 
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_of_several_refused_rows_the_first_is_named_for_any_number_of_threads(woman: Model, threads: int) -> None:
+    q = np.tile(woman.default_posture, (3000, 1))
+    for row, first in ((2999, 2999), (1400, 1400), (300, 300), (127, 127), (1600, 127)):
+        q[row, 0] = np.nan
+        with pytest.raises(InputError) as error:
+            woman.torques(q, threads=threads)
+        assert error.value.row == first
+
+
 @pytest.mark.parametrize(
     ("q", "message"),
     [

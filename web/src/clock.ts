@@ -61,13 +61,13 @@ export class Clock {
     });
   }
 
-  /** Another strategy; of a run, from now on, with muscles as tired as they are. */
-  setStrategy(kind: string): void {
+  /** Another strategy of a region, or of the whole body; of a run, from now on, with muscles as tired as they are. */
+  setStrategy(kind: string, region: string | undefined): void {
     const went = this.running;
     void this.page.turn(async (goesOn) => {
       const passed = this.page.inRun ? this.before + this.time : 0;
       await this.page.leaveRun();
-      await this.page.ask({ do: "strategy", kind });
+      await this.page.ask({ do: "strategy", kind, region });
       this.before = passed;
       if (!went || !goesOn()) return;
       this.show(true);

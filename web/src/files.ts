@@ -42,13 +42,14 @@ export class Files {
     }
     const scenario = files.find(({ name }) => name.toLowerCase().endsWith(".toml"));
     const model = files.find(({ name }) => /\.(osim|urdf|xml|mjcf)$/i.test(name));
+    const motion = files.find(({ name }) => /\.(mot|sto)$/i.test(name));
     if (scenario) {
       await page.turn((goesOn) => this.openScenario(read.get(scenario.name)!, Object.fromEntries(read), goesOn));
     } else if (model) {
       await page.turn(() => page.open({ do: "open_model", name: model.name, text: read.get(model.name)! }));
-    } else {
-      page.tell(texts.noFile);
     }
+    if (motion) await page.recorded?.open(motion.name, read.get(motion.name)!);
+    if (!scenario && !model && !motion) page.tell(texts.noFile);
   }
 
   async save(): Promise<void> {
@@ -64,6 +65,14 @@ export class Files {
     if (answer.is === "text") this.give(name, answer.text, "text/plain");
     if (answer.is === "bytes") this.give(name, Uint8Array.from(answer.bytes), "model/gltf-binary");
     this.page.tell(texts.given(name));
+  }
+
+  /** The posture that is shown, or the run so far, as a page of its own. */
+  async report(): Promise<void> {
+    this.page.tell(texts.reporting);
+    const answer = await this.page.ask({ do: "report" });
+    if (answer.is === "text") this.give("report.html", answer.text, "text/html");
+    this.page.tell(texts.given("report.html"));
   }
 
   /** The picture as it is. */

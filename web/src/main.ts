@@ -3,13 +3,14 @@ import { Clock } from "./clock";
 import { Files } from "./files";
 import { Hand } from "./hand";
 import { scenarioPart } from "./link";
-import type { Request } from "./messages";
+import type { Request, Vector } from "./messages";
 import { button, make } from "./dom";
 import { Help } from "./help";
 import { recall } from "./kept";
 import { keepForOffline } from "./offline";
 import { Page, byId } from "./page";
 import { Panel } from "./panel";
+import { Recorded } from "./recorded";
 import { Rest } from "./rest";
 import { duration, texts } from "./texts";
 import { View, sides } from "./view";
@@ -18,18 +19,20 @@ const page = new Page();
 const hand = new Hand(page);
 const files = new Files(page);
 
-page.panel = new Panel(byId("panel"), {
+page.panel = new Panel(byId("panel"), byId("changes"), {
   figure: (wooden) => {
     if (page.view) page.view.wooden = wooden;
     page.dress();
   },
   adult: (sex, stature, mass) => page.change({ do: "adult", sex, stature, mass }),
+  percentile: (sex, percentile) => page.change({ do: "percentile", sex, percentile }),
   nudge: (handle, way) => hand.nudge(handle, way),
   free: (segment) => page.change({ do: "free", segment }),
   load: (segment, mass) => page.change({ do: "load", segment, mass }),
+  takeOff: ({ segment, point }) => page.change({ do: "push", segment, point, force: [0, 0, 0] }),
   put: (word, keys) => page.change({ do: "put", word, keys }),
   takeAway: (word, number) => page.change({ do: "take_away", word, number }),
-  strategy: (kind) => clock.setStrategy(kind),
+  strategy: (kind, region) => clock.setStrategy(kind, region),
   play: () => clock.toggle(),
   endPlay: (take) => clock.end(take),
   joint: () => page.chart(true),
@@ -41,6 +44,7 @@ page.panel = new Panel(byId("panel"), {
   reset: () => page.change({ do: "reset" }),
   openFiles: (given) => void page.guard(() => files.openFiles(given)),
   save: () => void page.guard(() => files.save()),
+  report: () => void page.guard(() => files.report()),
   picture: () => void page.guard(() => files.picture()),
   drawn: (kind) => void page.guard(() => files.drawn(kind)),
   link: () => void page.guard(() => files.link()),
@@ -82,6 +86,7 @@ function listen(): void {
 
 page.view = makeView();
 page.rest = new Rest(page);
+page.recorded = new Recorded(page);
 byId("views").ariaLabel = texts.views;
 byId("views").append(make("span", { textContent: texts.views }), ...sides.map((side) => button(texts.sides[side], `view-${side}`, () => page.view?.lookFrom(side))));
 new Help();
@@ -99,9 +104,24 @@ const probe = {
   },
   times: () => page.solver.times,
   ask: (request: Request) => page.ask(request),
+  /** A drag of the right hand, by its middle or by a point of it, along places beside where it is, each after a pause, ms. */
+  drag: async (ways: Vector[], pause: () => number, point?: Vector) => {
+    const handle = { ...page.scene!.handles[0], ...(point && { point }) };
+    const from = hand.placeOf(handle);
+    hand.grab(handle.segment, handle.point);
+    for (const way of ways) {
+      hand.drag(from.map((x, k) => x + way[k]) as Vector);
+      if (pause() > 0) await new Promise((resolve) => setTimeout(resolve, pause()));
+    }
+    hand.release();
+  },
   skin: () => page.view?.skinPlaces,
   figure: () => (page.view?.wooden === false && page.view.dressed ? "person" : "wooden"),
+  scene: () => page.scene,
   shown: () => page.shown,
+  /** Where a point of the right hand is. */
+  place: (point: Vector) => hand.placeOf({ ...page.scene!.handles[0], point }),
+  thingsShown: () => page.view?.thingsShown,
   geometries: () => page.view?.geometries ?? 0,
 };
 Object.assign(window, { studio: probe, duration });

@@ -8,25 +8,30 @@ export type Request =
   | { do: "open"; scenario: string; files?: Record<string, string> }
   | { do: "open_model"; name: string; text: string }
   | { do: "adult"; sex: string; stature: number; mass: number }
+  | { do: "percentile"; sex: string; percentile: number }
   | { do: "grab"; segment: string; point: Vector }
   | { do: "drag"; target: Vector }
   | { do: "release"; hold: boolean }
   | { do: "free"; segment: string }
   | { do: "settle" }
   | { do: "load"; segment: string; mass: number }
+  | { do: "push"; segment: string; point: Vector; force: Vector }
   | { do: "put"; word: string; keys: Keys }
   | { do: "take_away"; word: string; number: number }
-  | { do: "strategy"; kind: string }
+  | { do: "strategy"; kind: string; region?: string }
   | { do: "play"; samples: number }
   | { do: "stop"; take: boolean }
   | { do: "balance"; coordinate: string }
   | { do: "relax" }
   | { do: "go"; q: number[] }
+  | { do: "at"; q: number[] }
+  | { do: "motion"; name: string; text: string }
   | { do: "mirror" }
   | { do: "look"; time: number }
   | { do: "skin" }
-  | { do: "gltf"; wooden: boolean }
-  | { do: "bvh" }
+  | { do: "gltf"; wooden: boolean; course?: Course }
+  | { do: "bvh"; course?: Course }
+  | { do: "report" }
   | { do: "export" }
   | { do: "state" }
   | { do: "restore"; state: string }
@@ -99,6 +104,11 @@ export interface Segment {
   coordinates: [number, number];
 }
 
+/** A force on a point of a segment: in the segment's frame, m, and in ground, N. */
+export interface Pushed extends Handle {
+  force: Vector;
+}
+
 /** Keys of a table of the scenario file. */
 export type Keys = Record<string, unknown>;
 
@@ -110,7 +120,7 @@ export interface ThingTable {
 
 export interface Scene {
   title: string;
-  person: { sex: string; stature: number; mass: number } | null;
+  person: { sex: string; stature: number; mass: number; percentiles: [number, number] } | null;
   coordinates: Coordinate[];
   segments: Segment[];
   handles: Handle[];
@@ -119,7 +129,10 @@ export interface Scene {
   things: { name: string; size: Vector; place: Place; segment: number | null }[];
   loads: { segment: string; mass: number }[];
   tables: ThingTable[];
+  forces: Pushed[];
   strategy: string;
+  /** Strategies of regions: `active`, `passive`, `mixed`. */
+  regions: { name: string; strategy: string }[];
   notes: string[];
   can_undo: boolean;
   can_redo: boolean;
@@ -133,6 +146,8 @@ export interface Played {
   asking: string[];
   log: { time: number; sentence: string }[];
   decisions: number;
+  /** Indices of the things that have been put down. */
+  put_down: number[];
   ended: string | null;
   shown: Shown;
 }
@@ -144,6 +159,12 @@ export interface Balance {
   minus_passive: number[];
 }
 
+/** Postures over time. */
+export interface Course {
+  times: number[];
+  postures: number[][];
+}
+
 export type Answer =
   | ({ is: "scene" } & Scene)
   | ({ is: "shown" } & Shown)
@@ -152,7 +173,9 @@ export type Answer =
   | { is: "ways"; ways: Way[] }
   | { is: "skin"; skin: SkinScene | null }
   | { is: "bytes"; bytes: number[] }
+  | { is: "motion"; course: Course; notes: string[] }
   | { is: "text"; text: string }
+  | { is: "elsewhere"; state: string; course: Course | null; samples: number }
   | { is: "refused"; sentence: string };
 
 /** What the worker sends: an answer with the duration of the call, ms; or the reason why the module is gone. */

@@ -1,9 +1,10 @@
 // What is shown and told: the body, requests to the session and their answers, and the session that follows one that has failed.
 import { make } from "./dom";
 import { bands } from "./colours";
-import type { Answer, Played, Request, Scene, Shown } from "./messages";
+import type { Answer, Played, Request, Scene, Shown, Vector } from "./messages";
 import { forget, keep, type Kept } from "./kept";
 import type { Panel } from "./panel";
+import type { Recorded } from "./recorded";
 import type { Rest } from "./rest";
 import { Refused, Solver } from "./solver";
 import { texts } from "./texts";
@@ -16,6 +17,8 @@ const SETTLE_STEPS = 200;
 const STEPS_MS = 12;
 /** A session that fails sooner after the one before it does not get the same state again, ms. */
 const SOON_MS = 10_000;
+/** A place is reached at less, and a step that comes nearer by less brings nothing, m. */
+const REACHED = 1e-4;
 /** The scenario of a new page. */
 const FIRST: Request = { do: "open", scenario: "" };
 
@@ -34,11 +37,15 @@ export class Page {
   readonly solver = new Solver(() => void this.turn(() => this.solver.ask({ do: "state" })));
   readonly turns = new Turns(
     () => this.watching?.turn(),
-    (busy) => byId("stage").setAttribute("aria-busy", String(busy)),
+    (busy) => {
+      byId("stage").setAttribute("aria-busy", String(busy));
+      if (!busy) this.describe();
+    },
   );
   panel!: Panel;
   view?: View;
   rest?: Rest;
+  recorded?: Recorded;
   watching?: Watching;
   scene?: Scene;
   shown?: Shown;
@@ -55,9 +62,11 @@ export class Page {
   private reopenedAt = -Infinity;
   private attempts = 0;
   private chartDue = false;
+  private unseen?: Answer;
 
   constructor() {
     byId("hint").textContent = texts.hint;
+    byId("canvas").ariaLabel = texts.picture;
     byId("verdict").textContent = texts.loading;
     byId("scale").append(make("span", { textContent: texts.loadScale }));
     for (const { from, low, high } of bands) {
@@ -122,13 +131,14 @@ export class Page {
     });
   }
 
-  /** The body moves toward least effort, some steps a picture: as long as a picture takes, where that is longer. */
+  /** The body moves toward least effort, some steps a picture: as long as a picture takes, where that is longer. Something else that begins waits for
+   * the rest of the steps, which then are not shown: so where the body comes to does not depend on the time at which that begins. */
   async settle(goesOn: GoesOn): Promise<void> {
     let [begin, time] = [performance.now(), STEPS_MS];
-    for (let step = 1; step <= SETTLE_STEPS && goesOn(); step++) {
+    for (let step = 1; step <= SETTLE_STEPS; step++) {
       const answer = await this.solver.ask({ do: "settle" });
-      const last = answer.is !== "shown" || answer.settled || step === SETTLE_STEPS || !goesOn();
-      if (!last && performance.now() - begin < time) continue;
+      const last = answer.is !== "shown" || answer.settled || step === SETTLE_STEPS;
+      if (!last && (!goesOn() || performance.now() - begin < time)) continue;
       this.take(answer);
       if (last) break;
       const taken = performance.now();
@@ -138,10 +148,31 @@ export class Page {
     }
   }
 
+  /** Steps of the point that is grabbed toward a place: `most`, fewer where it is there, or where the last `patience` brought it no nearer. */
+  async toward(target: Vector, most: number, patience: number): Promise<void> {
+    let [nearest, idle] = [Infinity, 0];
+    for (let step = 0; step < most && idle < patience; step++) {
+      const answer = await this.solver.ask({ do: "drag", target });
+      if (answer.is !== "shown") return;
+      this.unseen = answer;
+      const miss = answer.miss ?? 0;
+      if (miss < REACHED) return;
+      idle = nearest - miss < REACHED ? idle + 1 : 0;
+      nearest = Math.min(nearest, miss);
+    }
+  }
+
+  /** Shows where the last steps have brought the body. */
+  showLast(): void {
+    if (this.unseen) this.take(this.unseen);
+    this.unseen = undefined;
+  }
+
   /** Opens a scenario or a model in place of the present one. */
   async open(request: Request): Promise<void> {
     await this.ask(request);
     this.rest?.clear();
+    this.recorded?.forget();
     this.opened = request;
     this.state = undefined;
   }
@@ -189,6 +220,7 @@ export class Page {
   private take(answer: Answer): void {
     if (answer.is === "scene") {
       this.scene = answer;
+      this.unseen = undefined;
       this.inRun = false;
       this.watching?.scene();
       document.title = `${answer.title || "contrapposto studio"}`;
@@ -202,6 +234,7 @@ export class Page {
     } else if (answer.is === "played") {
       this.inRun = true;
       this.show(answer.shown, answer);
+      this.view?.putDown(answer.put_down);
       this.watching?.played(answer);
     }
   }
@@ -223,6 +256,18 @@ export class Page {
     const names = this.scene.coordinates.map(({ name }) => name);
     byId("result").textContent = JSON.stringify({ names, q, external, active, verdict, time: played?.time ?? null, asking: played?.asking ?? [] });
     this.chart(false);
+  }
+
+  /** Tells in words what is shown, once nothing moves: the verdict, who works hardest, and what carries the weight. */
+  describe(): void {
+    const { scene, shown } = this;
+    if (!scene || !shown) return;
+    const loads = scene.coordinates.map(({ groups }, i) => ({ group: groups?.[shown.active[i] >= 0 ? 0 : 1], share: Math.round(100 * shown.load[i]) }));
+    const working = loads.filter(({ group, share }) => group && share > 0).sort((a, b) => b.share - a.share);
+    const label = (i: number) => scene.segments.find(({ name }) => name === scene.supports[i])?.label ?? "";
+    const shares = shown.contacts.map(({ share }, i) => texts.share(label(i), `${Math.round(100 * share)} %`));
+    const words = `${shown.verdict.sentence} ${texts.described(working.slice(0, 3).map(({ group, share }) => texts.highest(group!, share)), shares)}`;
+    if (byId("described").textContent !== words) byId("described").textContent = words;
   }
 
   /** Keeps the document as it is, for a session that follows this one. */

@@ -1,7 +1,7 @@
 // The controls beside the picture: what they show follows the scene, what they do is told to the page.
 import { draw } from "./chart";
 import { Slider, button, labelled, make } from "./dom";
-import type { Balance, Handle, Played, Scene, Shown, Vector } from "./messages";
+import type { Balance, Handle, Played, Pushed, Scene, Shown, Vector } from "./messages";
 import { duration, texts } from "./texts";
 import { Things, type Putting } from "./things";
 
@@ -13,10 +13,12 @@ const SPEEDS = [1, 10, 60, 600];
 export interface Doing extends Putting {
   figure(wooden: boolean): void;
   adult(sex: string, stature: number, mass: number): void;
+  percentile(sex: string, percentile: number): void;
   nudge(handle: Handle, way: Vector): void;
   free(segment: string): void;
   load(segment: string, mass: number): void;
-  strategy(kind: string): void;
+  takeOff(force: Handle): void;
+  strategy(kind: string, region: string | undefined): void;
   play(): void;
   endPlay(take: boolean): void;
   joint(name: string): void;
@@ -29,6 +31,7 @@ export interface Doing extends Putting {
   openFiles(files: File[]): void;
   save(): void;
   picture(): void;
+  report(): void;
   drawn(kind: "gltf" | "bvh"): void;
   link(): void;
 }
@@ -51,15 +54,20 @@ export class Panel {
   private readonly part = make("select", { id: "part" });
   private readonly held = make("ul", { id: "held" });
   private readonly weight: Slider;
+  private readonly push = make("input", { type: "checkbox", id: "pushing" });
+  private readonly forces = make("ul", { id: "forces" });
   private readonly figure: HTMLSelectElement;
   private readonly sex: HTMLSelectElement;
   private readonly stature: Slider;
   private readonly mass: Slider;
+  private readonly percentile: Slider;
+  private readonly percentiles = make("p", { className: "quiet", id: "percentiles" });
   private readonly strategies: HTMLInputElement[];
+  private readonly region = make("select", { id: "region" });
   private readonly playing: HTMLButtonElement;
   private readonly speeds = make("select", { id: "speed" }, ...SPEEDS.map((x) => make("option", { value: String(x), textContent: `${x}×` })));
   private readonly clock = make("output", { id: "clock" });
-  private readonly asking = make("p", { id: "asking" });
+  private readonly asking = make("p", { id: "asking", role: "status" });
   private readonly log = make("ol", { id: "log" });
   private readonly count = make("p", { className: "quiet" });
   private readonly run: HTMLElement;
@@ -77,6 +85,7 @@ export class Panel {
 
   constructor(
     root: HTMLElement,
+    changes: HTMLElement,
     private readonly doing: Doing,
   ) {
     const size = () => doing.adult(this.sex.value, this.stature.value, this.mass.value);
@@ -96,6 +105,7 @@ export class Panel {
     this.figure.addEventListener("change", () => doing.figure(this.figure.value === "wooden"));
     this.stature = new Slider(texts.stature, "stature", [1.2, 2.3, 0.01], "m", size);
     this.mass = new Slider(texts.mass, "mass", [30, 250, 1], "kg", size);
+    this.percentile = new Slider(texts.percentile, "percentile", [1, 99, 1], "", (percentile) => doing.percentile(this.sex.value, percentile));
     this.weight = new Slider(texts.weight, "weight", [0, 30, 0.5], "kg", (mass) => {
       const handle = this.handle();
       if (handle) doing.load(handle.segment, mass);
@@ -103,9 +113,10 @@ export class Panel {
     this.part.addEventListener("change", () => this.showWeight());
     this.strategies = ["passive", "active"].map((kind) => {
       const choice = make("input", { type: "radio", name: "strategy", value: kind, id: kind });
-      choice.addEventListener("change", () => doing.strategy(kind));
+      choice.addEventListener("change", () => doing.strategy(kind, this.region.value || undefined));
       return choice;
     });
+    this.region.addEventListener("change", () => this.showStrategy());
     this.playing = button(texts.play, "play", () => doing.play());
     this.undo = button(texts.undo, "undo", () => doing.undo());
     this.redo = button(texts.redo, "redo", () => doing.redo());
@@ -128,12 +139,14 @@ export class Panel {
       button(texts.now, "now", () => doing.now()),
     );
     this.speeds.value = "60";
+    changes.ariaLabel = texts.changes;
+    changes.append(this.undo, this.redo, button(texts.reset, "reset", () => doing.reset()), button(texts.mirror, "mirror", () => doing.mirror()), make("label", { className: "choice" }, this.push, texts.pushing));
     root.append(...this.sections());
     this.ended();
   }
 
   private sections(): HTMLElement[] {
-    const picker = make("input", { type: "file", multiple: true, hidden: true, accept: ".toml,.osim,.urdf,.xml,.mjcf" });
+    const picker = make("input", { type: "file", multiple: true, hidden: true, accept: ".toml,.osim,.urdf,.xml,.mjcf,.mot,.sto" });
     picker.addEventListener("change", () => {
       this.doing.openFiles([...(picker.files ?? [])]);
       picker.value = "";
@@ -148,26 +161,27 @@ export class Panel {
       button(texts.png, "png", () => this.doing.picture()),
       button(texts.gltf, "gltf", () => this.doing.drawn("gltf")),
       button(texts.bvh, "bvh", () => this.doing.drawn("bvh")),
+      button(texts.report, "report", () => this.doing.report()),
       button(texts.link, "link", () => this.doing.link()),
       picker,
     );
     return [
-      section(texts.partTitle, labelled(texts.part, this.part), make("div", { className: "row" }, ...WAYS.map(way)), make("p", { className: "quiet", textContent: texts.moveHelp }), this.weight.element, make("h3", { textContent: texts.held }), this.held),
+      section(texts.partTitle, labelled(texts.part, this.part), make("div", { className: "row" }, ...WAYS.map(way)), make("p", { className: "quiet", textContent: texts.moveHelp }), this.forces, this.weight.element, make("h3", { textContent: texts.held }), this.held),
       section(
         texts.time,
         make("div", { className: "row" }, this.playing, labelled(texts.speed, this.speeds), this.clock),
         this.run,
         this.looking,
         this.asking,
-        make("fieldset", {}, make("legend", { textContent: texts.strategyTitle }), strategy(this.strategies[0], texts.relaxed), strategy(this.strategies[1], texts.ready)),
+        make("fieldset", {}, make("legend", { textContent: texts.strategyTitle }), labelled(texts.region, this.region), strategy(this.strategies[0], texts.relaxed), strategy(this.strategies[1], texts.ready)),
         make("h3", { textContent: texts.log }),
         this.log,
         this.count,
       ),
       section(texts.things.title, ...this.things.elements),
       section(texts.jointTitle, labelled(texts.joint, this.jointChoice), this.chart as unknown as HTMLElement, this.numbers, make("h3", { textContent: texts.contacts }), this.contacts),
-      section(texts.body, labelled(texts.figure, this.figure), labelled(texts.sex, this.sex), this.stature.element, this.mass.element),
-      section(texts.files, make("div", { className: "row" }, this.undo, this.redo, button(texts.reset, "reset", () => this.doing.reset()), button(texts.mirror, "mirror", () => this.doing.mirror())), files, make("p", { className: "quiet", textContent: texts.about }), make("h3", { textContent: texts.notes }), this.notes),
+      section(texts.body, labelled(texts.figure, this.figure), labelled(texts.sex, this.sex), this.stature.element, this.mass.element, this.percentile.element, this.percentiles),
+      section(texts.files, files, make("p", { className: "quiet", textContent: texts.about }), make("h3", { textContent: texts.notes }), this.notes),
     ];
   }
 
@@ -186,6 +200,11 @@ export class Panel {
     const way = WAYS.find(([, , key]) => key === name);
     if (way) this.nudge(way[1]);
     return way !== undefined;
+  }
+
+  /** A drag, and a press of a button, pushes on a part instead of moving it. */
+  get pushing(): boolean {
+    return this.push.checked;
   }
 
   get speed(): number {
@@ -207,8 +226,14 @@ export class Panel {
     this.jointChoice.value = joints.some(({ name }) => name === joint) ? joint : hardest(scene);
     const free = ({ label, segment }: Handle) => make("li", {}, button(texts.free(label), `free-${segment}`, () => this.doing.free(segment)));
     this.held.replaceChildren(...(scene.held.length ? scene.held.map(free) : [make("li", { className: "quiet", textContent: texts.nothingHeld })]));
-    for (const control of [this.sex, this.stature, this.mass]) control.disabled = scene.person === null;
+    for (const control of [this.sex, this.stature, this.mass, this.percentile]) control.disabled = scene.person === null;
     this.figure.disabled = scene.shown.bones.length === 0;
+    const off = (force: Pushed) => make("li", {}, button(texts.takeOff(force.label, Math.hypot(...force.force)), `off-${force.segment}`, () => this.doing.takeOff(force)));
+    this.forces.replaceChildren(...scene.forces.map(off));
+    const region = this.region.value;
+    const regions = scene.regions.map(({ name }) => make("option", { value: name, textContent: texts.regions[name] ?? name }));
+    this.region.replaceChildren(make("option", { value: "", textContent: texts.wholeBody }), ...regions);
+    this.region.value = scene.regions.some(({ name }) => name === region) ? region : "";
     [this.undo.disabled, this.redo.disabled] = [!scene.can_undo, !scene.can_redo];
     this.things.open(scene);
     this.notes.replaceChildren(...scene.notes.map((textContent) => make("li", { textContent })));
@@ -224,9 +249,21 @@ export class Panel {
       this.sex.value = scene.person.sex;
       this.stature.value = scene.person.stature;
       this.mass.value = scene.person.mass;
+      const [stature, mass] = scene.person.percentiles.map(Math.round);
+      this.percentile.value = Math.min(99, Math.max(1, stature));
+      this.percentiles.textContent = texts.percentiles(stature, mass);
     }
-    for (const choice of this.strategies) choice.checked = choice.value === scene.strategy;
+    this.showStrategy();
     this.showWeight();
+  }
+
+  /** The strategy of the chosen region; of the whole body only where all regions have it. */
+  private showStrategy(): void {
+    const { scene } = this;
+    if (!scene) return;
+    const chosen = scene.regions.filter(({ name }) => !this.region.value || name === this.region.value);
+    const kinds = chosen.length ? chosen.map(({ strategy }) => strategy) : [scene.strategy];
+    for (const choice of this.strategies) choice.checked = kinds.every((kind) => kind === choice.value);
   }
 
   private showWeight(): void {

@@ -10,11 +10,11 @@ export const texts = {
     tour: "Tour of six steps",
     title: "The studio",
     lines: [
-      "Drag a part of the body: the feet stay, the body keeps its balance, and where you let go the part stays. Drag beside the body to turn the view.",
+      "Drag a part of the body: the feet stay, the body keeps its balance, and where you let go the part stays. A foot that is dragged stands elsewhere. Drag beside the body to turn the view.",
       "With the keyboard: Tab goes through all controls. With the picture in focus, arrow keys, Page Up and Page Down move the chosen part; Ctrl+Z takes a change back.",
       "Colours are the load of muscles as a share of their strength: light below 8 %, dark from half of it on; grey has no muscles. Green arrows are contact forces, the dark ball the centre of mass, pink balls are held in place.",
       "The sentence on top says how long the posture can be held, and which muscles give up first. Play lets time run: muscles tire, ask for relief, and the body goes to another posture, ready or relaxed.",
-      "Find ways to rest searches for all postures of least effort. The scenario that you save gives the same numbers in the program `contrapposto`.",
+      "Find ways to rest searches for all postures of least effort. A scenario, a model or a recorded motion (.mot) is dropped on the page. The scenario that you save gives the same numbers in the program `contrapposto`.",
       "Nothing leaves this page. What you do stays in this browser until you open something else.",
     ],
     skin: "The skin is made from MakeHuman's base mesh, which is free for all (CC0 1.0)",
@@ -34,7 +34,7 @@ export const texts = {
   restored: "This is the body as you left it. “As opened” goes back to the scenario that you opened.",
   loading: "Loading the body …",
   preparing: "Preparing the run …",
-  hint: "Drag a part of the body. Drag beside the body to turn the view, with the wheel or two fingers to come nearer.",
+  hint: "Drag a part of the body; a foot that is dragged stands elsewhere. Drag beside the body to turn the view, with the wheel or two fingers to come nearer.",
   broken: (why: string, state: string) => `The studio stopped on a defect of its own (${sentence(why)}) and began anew. ${state}`,
   asBefore: "The body is as it was after the last change; a run begins at its start, and earlier changes cannot be undone one by one.",
   asOpened: "The last scenario was opened again, without the changes since.",
@@ -63,7 +63,7 @@ export const texts = {
     left: "left",
     right: "right",
   },
-  moveHelp: "Each button moves the part by 2 cm. With the picture in focus: arrow keys, Page Up and Page Down.",
+  moveHelp: "Each button moves the part by 2 cm (with “Push instead of move” below the picture, it pushes by 10 N more). With the picture in focus: arrow keys, Page Up and Page Down.",
   held: "Held in place",
   free: (label: string) => `Let go: ${label}`,
   nothingHeld: "Nothing: a part that you drag stays where you leave it.",
@@ -83,6 +83,17 @@ export const texts = {
       under: "Under", stride: "Stride", foot: "Foot ahead", stepping: "Feet may step", backrest: "Backrest", edge: "Near edge", side: "Side", distance: "Distance",
     } as Record<string, string>,
   },
+  pushing: "Push instead of move",
+  newtons: (force: number) => `${force} N`,
+  takeOff: (label: string, force: number) => `Take off: ${Math.round(force)} N on the ${label}`,
+  snapped: (thing: string) => `On the ${thing}.`,
+  floor: "floor",
+  region: "Of",
+  wholeBody: "the whole body",
+  regions: { spine: "the spine", neck: "the neck", arms: "the arms", legs: "the legs" } as Record<string, string>,
+  percentile: "Percentile of both",
+  percentiles: (stature: number, mass: number) =>
+    `Percent of people of that sex who are no taller: ${stature}; no heavier: ${mass} (ANSUR II, soldiers).`,
   strategyTitle: "When a muscle is tired",
   ready: "ready: joints stay where muscles work well",
   relaxed: "relaxed: ligaments take the load",
@@ -115,6 +126,16 @@ export const texts = {
     way: (number: number, effort: number, joints: string[]) =>
       `${number}: effort ${effort.toFixed(4)}${joints.length ? `; on ligaments: ${joints.slice(0, 3).join(", ")}${joints.length > 3 ? ` and ${joints.length - 3} more` : ""}` : "; nothing on ligaments"}`,
   },
+  recorded: {
+    moment: "Moment of the motion",
+    close: "Close the motion",
+    about: "A recorded motion: each moment is held still on the supports of this job, without forces of acceleration. “Keep this posture” goes on from it; a part that is dragged begins where the body was before.",
+    opened: (name: string, count: number) => `${name}: ${count} moments.`,
+  },
+  described: (highest: string[], shares: string[]) =>
+    [highest.length ? `Highest load: ${highest.join(", ")}.` : "No muscle works.", shares.length ? `Weight: ${shares.join(", ")}.` : ""].join(" ").trim(),
+  highest: (group: string, share: number) => `${group} ${share} %`,
+  picture: "Picture of the body. Arrow keys, Page Up and Page Down move the chosen part.",
   look: "Look back",
   now: "Now",
   looked: (at: string) => `You look back at ${at}. “Now” returns; every change begins from now.`,
@@ -124,7 +145,7 @@ export const texts = {
   redo: "Redo",
   reset: "As opened",
   files: "Files",
-  open: "Open a scenario or a model …",
+  open: "Open a scenario, a model or a motion …",
   export: "Save the scenario",
   link: "Copy a link",
   copied: "The link is copied. It holds the whole scenario.",
@@ -132,9 +153,11 @@ export const texts = {
   png: "Picture (PNG)",
   gltf: "Body (glTF)",
   bvh: "Motion (BVH)",
+  report: "Report (HTML)",
+  reporting: "Writing the report …",
   given: (name: string) => `Saved as ${name}.`,
   saved: (name: string) => `Saved as ${name}; \`contrapposto simulate ${name}\` gives the same numbers.`,
-  noFile: "This file is no scenario (.toml) and no model (.osim, .urdf, .xml).",
+  noFile: "This file is no scenario (.toml), no model (.osim, .urdf, .xml) and no motion (.mot, .sto).",
   tooLarge: (name: string, most: string) => `${name} is larger than ${most}; such a file is not read here.`,
   unreadable: (name: string) => `${name} cannot be read.`,
   badLink: "The link holds no scenario that can be read.",
@@ -153,10 +176,10 @@ export const texts = {
   about: "Nothing leaves this page: bodies, files and links stay on this machine.",
 };
 
-/** A moment in words, as the program and its report have it: `0.52 s`, `52.0 s`, `7.95 min`, `1.667 h`. */
+/** A moment in words, as the program and its report have it: `0.52 s`, `52.0 s`, `7.95 min`, `33.4 min`, `1.667 h`. */
 export function duration(seconds: number): string {
   if (seconds < 9.95) return `${seconds.toFixed(2)}\u00a0s`;
   if (seconds < 100) return `${seconds.toFixed(1)}\u00a0s`;
-  if (seconds < 5970) return `${(seconds / 60).toFixed(2)}\u00a0min`;
+  if (seconds < 5970) return `${(seconds / 60).toFixed(seconds < 597 ? 2 : 1)}\u00a0min`;
   return `${(seconds / 3600).toFixed(3)}\u00a0h`;
 }

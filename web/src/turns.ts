@@ -6,6 +6,7 @@ export type GoesOn = () => boolean;
 export class Turns {
   private last = 0;
   private queue: Promise<unknown> = Promise.resolve();
+  private told?: () => void;
 
   /** `ended`: the present turn is to end. `busy`: whether a turn is under way. */
   constructor(
@@ -27,6 +28,13 @@ export class Turns {
   /** Ends the present turn; no other begins. */
   end(): void {
     this.last++;
+    this.told?.();
+    this.told = undefined;
     this.ended();
+  }
+
+  /** Calls a function once, where the present turn is to end. */
+  whenEnded(tell: () => void): void {
+    this.told = tell;
   }
 }

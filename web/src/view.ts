@@ -83,6 +83,7 @@ export class View {
   private materials: MeshLambertMaterial[][] = [];
   private solids: Mesh[] = [];
   private things: Group[] = [];
+  private pulled?: ArrowHelper;
   private scene?: Scene;
   private shown?: Shown;
   private skin?: Skin;
@@ -274,20 +275,50 @@ export class View {
     this.redraw();
   }
 
+  /** Things that are put down are not there. */
+  putDown(indices: number[]): void {
+    this.things.forEach((thing, i) => (thing.visible = !indices.includes(i)));
+    this.redraw();
+  }
+
+  /** Which things are there. */
+  get thingsShown(): boolean[] {
+    return this.things.map(({ visible }) => visible);
+  }
+
+  /** The force of an arrow of one metre, N. */
+  get newtonsPerMetre(): number {
+    const weight = this.shown?.contacts.reduce((sum, { force }) => sum + force[1], 0) || 600;
+    return Math.abs(weight) / ARROW;
+  }
+
+  /** Draws a force that the pointer draws; without one takes it away. */
+  pull(at?: Vector, force: Vector = [0, 0, 0]): void {
+    if (this.pulled) discard(this.pulled);
+    this.pulled = at && this.arrow(at, force, "--load", 0);
+    if (this.pulled) this.world.add(this.pulled);
+    this.redraw();
+  }
+
+  /** An arrow of a force, at least so long, m; none of next to no force. */
+  private arrow(at: Vector, force: Vector, colour: string, least: number): ArrowHelper | undefined {
+    const way = new Vector3(...force);
+    const length = Math.max(way.length() / this.newtonsPerMetre, least);
+    if (length < 0.012 || !Number.isFinite(length)) return undefined;
+    const drawn = new ArrowHelper(way.normalize(), new Vector3(...at), length, this.colour(colour), 0.07, 0.045);
+    // Forces within the body are seen through it.
+    for (const part of [drawn.line, drawn.cone]) {
+      Object.assign(part.material, { depthTest: false, transparent: true });
+      part.renderOrder = 1;
+    }
+    return drawn;
+  }
+
   private mark(shown: Shown, held: Handle[]): void {
     for (const old of [...this.marks.children]) discard(old);
-    const weight = shown.contacts.reduce((sum, { force }) => sum + force[1], 0) || 600;
     const arrow = (at: Vector, force: Vector, colour: string, least: number) => {
-      const way = new Vector3(...force);
-      const length = Math.max((way.length() / Math.abs(weight)) * ARROW, least);
-      if (length < 0.012 || !Number.isFinite(length)) return;
-      const drawn = new ArrowHelper(way.normalize(), new Vector3(...at), length, this.colour(colour), 0.07, 0.045);
-      // Forces within the body are seen through it.
-      for (const part of [drawn.line, drawn.cone]) {
-        Object.assign(part.material, { depthTest: false, transparent: true });
-        part.renderOrder = 1;
-      }
-      this.marks.add(drawn);
+      const drawn = this.arrow(at, force, colour, least);
+      if (drawn) this.marks.add(drawn);
     };
     for (const { at, force } of shown.contacts) if (at) arrow(at, force, "--force", 0);
     for (const { at, force } of shown.pushes) arrow(at, force, "--load", 0.16);

@@ -98,6 +98,23 @@ test("the same requests twice give the same bytes", () => {
   assert.deepEqual(inModule(requests), inModule(requests));
 });
 
+test("the module with all readers and writers gives the same bytes", async () => {
+  const all = await import("../src/module/all/contrapposto_web.js");
+  all.initSync({ module: readFileSync(join(web, "src", "module", "all", "contrapposto_web_bg.wasm")) });
+  const requests = [...drags(60), ...Array.from({ length: 60 }, () => ({ do: "settle" })), { do: "play", samples: 100 }, { do: "export" }];
+  const session = new all.Session();
+  assert.deepEqual(requests.map((request) => session.call(JSON.stringify(request))), inModule(requests));
+  // A run is drawn by that module from its course.
+  const first = inModule([{ do: "open", scenario: "" }, { do: "play", samples: 10 }, { do: "bvh" }]).map((text) => JSON.parse(text)).at(-1);
+  assert.equal(first.is, "elsewhere");
+  const ask = (session, request) => JSON.parse(session.call(JSON.stringify(request)));
+  const other = new all.Session();
+  assert.equal(ask(other, { do: "restore", state: first.state }).is, "scene");
+  const whole = new all.Session();
+  for (const request of [{ do: "open", scenario: "" }, { do: "play", samples: 10 }]) ask(whole, request);
+  assert.deepEqual(ask(other, { do: "bvh", course: first.course }), ask(whole, { do: "bvh" }));
+});
+
 test("a scenario that is broken is refused in a sentence", () => {
   const [answer] = inModule([{ do: "open", scenario: "format = 1\n[model]\nadult = 3\n" }]).map((text) => JSON.parse(text));
   assert.equal(answer.is, "refused");

@@ -1,7 +1,7 @@
 // The mouse drags a hand, a weight hangs on it, undo takes both back; no request leaves the page.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { atRest, close, open, port, result, slide, useBrowser } from "./browser.mjs";
+import { atRest, close, newPage, open, port, result, slide, useBrowser, withBody } from "./browser.mjs";
 
 useBrowser();
 
@@ -103,5 +103,61 @@ test("twenty changes leave as many shapes on the graphics card as none", async (
   t.diagnostic(`${before} shapes, then ${after}`);
   assert.ok(before > 10, "nothing was drawn");
   assert.ok(after <= before + 3, `${before} shapes became ${after}`);
+  await close(opened);
+});
+
+test("where a drag ends depends on the places of the pointer alone, not on the times at which they come", async (t) => {
+  const ways = Array.from({ length: 30 }, (_, k) => [0.012 * k, 0.3 * Math.sin(0.1 * k), 0.1 * Math.sin(0.23 * k)]);
+  const ends = [];
+  for (const [pause, picture] of [[0, 0], [30, 0], ["by chance", 0], [10, 120]]) {
+    const opened = await newPage();
+    const { page } = opened;
+    // Pictures that come late.
+    await page.addInitScript((late) => {
+      const request = window.requestAnimationFrame.bind(window);
+      if (late) window.requestAnimationFrame = (draw) => request(() => setTimeout(draw, late));
+    }, picture);
+    await page.goto(`http://127.0.0.1:${port()}/`, { waitUntil: "commit" });
+    await withBody(page);
+    await atRest(page);
+    await page.evaluate(([ways, pause]) => window.studio.drag(ways, () => (typeof pause === "number" ? pause : 90 * Math.random())), [ways, pause]);
+    await page.waitForSelector("#free-hand_r");
+    await atRest(page);
+    ends.push(await result(page));
+    await close(opened);
+  }
+  const elbow = ends[0].names.indexOf("elbow_flex_r");
+  t.diagnostic(`elbow ${ends.map(({ q }) => q[elbow]).join(", ")} rad`);
+  for (const end of ends.slice(1)) {
+    assert.deepEqual(end.q, ends[0].q);
+    assert.deepEqual(end.external, ends[0].external);
+  }
+});
+
+test("the mouse puts a foot elsewhere: it stands there, the other one stays, undo brings it back", async (t) => {
+  const opened = await open();
+  const { page } = opened;
+  await atRest(page);
+  const standing = await result(page);
+  const patches = () => page.evaluate(() => window.studio.shown().patches);
+  const before = await patches();
+  await page.click("#view-right");
+  const [x, y] = await onScreen(page, "right foot");
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 35, y - 20, { steps: 10 });
+  await page.mouse.up();
+  await page.waitForFunction(() => !document.querySelector("#undo").disabled);
+  await atRest(page);
+  assert.equal(await page.isHidden("#notice"), true, await page.textContent("#notice"));
+  const ways = (await patches()).map((corner, i) => corner.map((x, k) => x - before[i][k]));
+  t.diagnostic(JSON.stringify(ways));
+  const far = ([x, , z]) => Math.hypot(x, z);
+  const [moved, stayed] = [ways.filter((way) => far(way) > 0.05), ways.filter((way) => far(way) < 1e-3)];
+  assert.deepEqual([moved.length, stayed.length], [4, 4]);
+  assert.ok(ways.every(([, up]) => Math.abs(up) < 1e-3), "a sole is off the floor");
+  assert.equal(await page.locator("#held button").count(), 0);
+  await page.click("#undo");
+  await page.waitForFunction((q) => JSON.parse(document.querySelector("#result").textContent).q.join() === q, standing.q.join());
   await close(opened);
 });

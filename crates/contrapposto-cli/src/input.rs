@@ -79,3 +79,8 @@ pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, Fail> {
 fn read_at_most(from: impl Read, most: u64, bytes: &mut Vec<u8>) -> std::io::Result<usize> {
     from.take(most + 1).read_to_end(bytes)
 }
+
+/// Whether a file is an animation by its name.
+pub(crate) fn is_animation(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ["bvh", "glb", "gltf"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}

@@ -3,6 +3,13 @@
 //! Results go to standard output, progress and complaints to standard error. Exit codes: 0 done, 1 the job failed, 2 bad
 //! input. A closed pipe is no failure.
 
+/// The text of a scenario of the repository, by its name; `build.rs` says where it is.
+macro_rules! scenario {
+    ($name:literal) => {
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), env!("CONTRAPPOSTO_SCENARIOS"), $name, ".toml"))
+    };
+}
+
 mod args;
 mod commands;
 mod fail;
@@ -26,6 +33,7 @@ use commands::{
     animation, assess, capacity, compare, convert, figures, inspect, minimize, muscles, new, passive, population, pose,
     relax, scale, simulate, studio, sweep, torques, track,
 };
+use input::is_animation;
 use output::Notes;
 
 /// Carries out a command line, whose first word is the program's name; gives the exit code.
@@ -63,7 +71,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Muscles(args) => muscles::muscles(&args),
         Verb::Muscle(args) => muscles::one::muscle(&args),
         Verb::Scale(args) => scale::scale(&args),
-        Verb::Track(args) if animation::is_animation(&args.markers) => animation::animation(&args),
+        Verb::Track(args) if is_animation(&args.markers) => animation::animation(&args),
         Verb::Track(args) => track::track(&args),
         Verb::Assess(args) => assess::assess(&args),
         Verb::Convert(args) => convert::convert(&args),

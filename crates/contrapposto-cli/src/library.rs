@@ -1,6 +1,7 @@
 //! Gives the results of the commands as values, for programs that have no command line.
 
 mod controller;
+mod examples;
 mod failure;
 mod frames;
 mod jobs;
@@ -12,6 +13,7 @@ mod sweep;
 mod torques;
 
 pub use controller::Controller;
+pub use examples::EXAMPLES;
 pub use failure::{Failure, Note, Place};
 pub use frames::Frames;
 pub use jobs::{Assessed, MotionSource, Posed, Relaxed, ScenarioSource, Simulated};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use contrapposto::assessment::{NEARLY_ALL, share_outside};
+use contrapposto::assessment::{NEARLY_ALL, is_in_doubt, share_outside};
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -14,7 +14,7 @@ use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::{FrameArgs, LoadArgs};
 use crate::fail::Fail;
-use crate::input::{confined, read};
+use crate::input::{confined, is_animation, read};
 use crate::output::print_note;
 
 /// Held weights and forces, and ground reactions if there are any.
@@ -43,6 +43,11 @@ pub(crate) fn loads_of(
 fn holds_markers(name: &str, bytes: &[u8]) -> bool {
     let name = name.to_ascii_lowercase();
     [".trc", ".c3d"].iter().any(|ending| name.ends_with(ending)) || bytes.starts_with(b"PathFileType") || is_c3d(bytes)
+}
+
+/// Whether a file is an animation (.bvh, .glb, .gltf).
+fn holds_animation(path: &Path, bytes: &[u8]) -> bool {
+    is_animation(path) || bytes.starts_with(b"HIERARCHY") || bytes.starts_with(b"glTF")
 }
 
 /// The forces of --grf; notes say on which segments its plates are taken to act.
@@ -189,6 +194,11 @@ pub(crate) fn read_whole_motion(
             "is a marker file; `contrapposto track MODEL FILE --out DIR` makes a motion of it: give DIR/motion.mot";
         return Err(Fail::Refused(format!("{name}: {why}")));
     }
+    if holds_animation(path, &bytes) {
+        let why =
+            "is an animation; `contrapposto track adult FILE --out DIR` makes a motion of it: give DIR/motion.mot";
+        return Err(Fail::Refused(format!("{name}: {why}")));
+    }
     let table = read_table(&name, &bytes)?;
     table.warnings.iter().for_each(|warning| print_note("warning", warning));
     let units = match (args.degrees, args.radians) {
@@ -246,10 +256,6 @@ fn first_of(names: &[String]) -> String {
 /// A hinge that lies so far beyond its range, rad, is an error of the file: a quarter of a turn (assumed).
 const FAR: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Share of the frames outside of its range from which on a coordinate whose opposite lies inside has a wrong sign: a knee that walks is nearly
-/// straight in half of them. Assumed.
-const OFTEN: f64 = 0.25;
-
 /// Values above this, rad or m, that a smaller unit would lay into the range of their coordinate, are in that unit (assumed: two turns; no laboratory is
 /// so large).
 const LIKELY_UNIT: f64 = 12.0;
@@ -270,8 +276,7 @@ pub(crate) fn note_values_out_of_range(
         }
         let values: Vec<f64> = frames.iter().map(|(_, posture)| posture.values()[index]).collect();
         let outside = share_outside(values.iter().copied(), coordinate.range);
-        let turned = || share_outside(values.iter().map(|value| -value), coordinate.range) <= 1.0 - NEARLY_ALL;
-        if outside >= NEARLY_ALL || (outside >= OFTEN && turned()) {
+        if is_in_doubt(&values, coordinate.range) {
             warnings.push(out_of_range(coordinate, &values, outside));
         } else if let Some(far) = far_outside(coordinate, frames, index) {
             warnings.push(far);

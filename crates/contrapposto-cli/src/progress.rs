@@ -1,11 +1,12 @@
 //! Progress on standard error: a bar on a terminal; elsewhere a line after ten seconds, and then one a minute.
 
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::ops::Deref;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 /// Time to the first line where standard error is no terminal, and between two lines.
 const WAITS: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(60)];
@@ -48,13 +49,26 @@ pub(crate) fn progress_bar(duration: f64) -> Progress {
 /// Finished runs on standard error, with the time that is left.
 pub(crate) fn rows_bar(rows: u64) -> Progress {
     let bar = ProgressBar::new(rows);
-    if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:40} {pos} of {len} runs, {eta} left") {
-        bar.set_style(style);
+    if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:40} {pos} of {len} runs, {left}") {
+        let left = |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+            // A bar that cannot be drawn is no reason to end.
+            let _ = out.write_str(&time_left(state.elapsed(), state.pos(), state.len().unwrap_or_default()));
+        };
+        bar.set_style(style.with_key("left", left));
     }
     shown(bar, |bar| {
-        let (done, all, left) = (bar.position(), bar.length().unwrap_or_default(), bar.eta().as_secs());
-        format!("{done} of {all} runs, about {left} s left,")
+        let (done, all) = (bar.position(), bar.length().unwrap_or_default());
+        format!("{done} of {all} runs, {},", time_left(bar.elapsed(), done, all))
     })
+}
+
+/// The time that is left if all runs take the mean time of those that are done.
+fn time_left(elapsed: Duration, done: u64, all: u64) -> String {
+    if done == 0 {
+        return "the time left is not yet known".to_owned();
+    }
+    let left = elapsed.as_secs_f64() / done as f64 * all.saturating_sub(done) as f64;
+    format!("about {left:.0} s left")
 }
 
 /// Frames of a motion on standard error.
@@ -66,10 +80,10 @@ pub(crate) fn frames_bar(frames: usize) -> Progress {
     shown(bar, |bar| format!("{} of {} instants", bar.position(), bar.length().unwrap_or_default()))
 }
 
-/// Something that turns on standard error, with words for what is done.
-pub(crate) fn spinner(what: &'static str) -> Progress {
+/// Something that turns on standard error, with words for what is done, as far as a line holds them.
+pub(crate) fn spinner(what: impl Into<Cow<'static, str>>) -> Progress {
     let bar = ProgressBar::new_spinner().with_message(what);
-    if let Ok(style) = ProgressStyle::with_template("{elapsed} {spinner} {msg}") {
+    if let Ok(style) = ProgressStyle::with_template("{elapsed} {spinner} {wide_msg}") {
         bar.set_style(style);
     }
     shown(bar, ProgressBar::message)
@@ -106,6 +120,14 @@ fn tell(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_time_left_is_that_of_runs_of_the_mean_time() {
+        let seconds = Duration::from_secs;
+        assert_eq!(time_left(seconds(730), 126, 2000), "about 10857 s left");
+        assert_eq!(time_left(seconds(10), 0, 2000), "the time left is not yet known");
+        assert_eq!(time_left(seconds(10), 5, 5), "about 0 s left");
+    }
 
     #[test]
     fn a_bar_is_told_after_the_first_wait_and_then_after_each_second_one_until_it_is_dropped() {

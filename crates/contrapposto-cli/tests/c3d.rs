@@ -1,8 +1,6 @@
 //! C3D files: the same motion and the same scaled model as by `.trc`; refusals; mutated files.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 #[path = "../../contrapposto-formats/tests/common/c3d.rs"]
 mod writer;
 

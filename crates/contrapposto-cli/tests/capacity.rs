@@ -1,8 +1,6 @@
 //! `contrapposto capacity`: a scenario in, the greatest forces at a point of the body out.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use std::path::{Path, PathBuf};
 
@@ -124,7 +122,7 @@ fn the_verdict_comes_first_where_the_posture_cannot_be_held() {
     let run = capacity(&tiring, &["--at", "hand_l", "--hold", "1h"]);
     assert_eq!(run.code, 1);
     assert!(
-        run.stdout.starts_with("No force can be held for 60.0\u{a0}min, because the posture cannot. Can be held "),
+        run.stdout.starts_with("No force can be held for 60\u{a0}min, because the posture cannot. Can be held "),
         "{}",
         run.stdout
     );

@@ -1,8 +1,6 @@
 //! `contrapposto compare` and `--figures`: they say the same as the other commands, and name which file is wrong.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use std::path::{Path, PathBuf};
 
@@ -107,6 +105,17 @@ fn the_tables_name_what_differs_and_bodies_may_differ() {
         assert!(run.stdout.contains(words), "{words}\n{}", run.stdout);
     }
     assert!(!run.stdout.contains("not compared"));
+    let loaded = std::fs::read_to_string(&ready).unwrap() + "\n[[load]]\nsegment = \"hand_r\"\nmass_kg = 15\n";
+    let heavy = folder.path().join("heavy.toml");
+    std::fs::write(&heavy, loaded).unwrap();
+    let run = compare(&[&heavy, &ready], folder.path(), &[]);
+    let on_feet = run.stdout.lines().filter(|line| line.trim_start().starts_with("weight on"));
+    let of_heavy = on_feet.map(|line| {
+        let before = line.split('%').next().unwrap();
+        before.split_whitespace().last().unwrap().parse::<f64>().unwrap()
+    });
+    let (feet, all) = of_heavy.fold((0, 0.0), |(feet, all), share| (feet + 1, all + share));
+    assert!(feet == 2 && (all - 100.0).abs() < 0.11, "{feet} feet carry {all} % of body and loads\n{}", run.stdout);
     let arm = folder.path().join("arm.toml");
     std::fs::write(&arm, ARM).unwrap();
     let found = json(&compare(&[&shelf(), &arm], folder.path(), &["--json"]).stdout);

@@ -1,8 +1,6 @@
 //! `contrapposto assess` of a motion with cycles: mean and standard deviation of known ones in JSON, page and words, and what has none.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use std::f64::consts::TAU;
 use std::fmt::Write;

@@ -1,9 +1,7 @@
 //! `contrapposto figures`: the published elbow cases replayed, each with the printed cases in the printed order, as pictures
 //! and as JSON; "as printed" is claimed only where the path also has the kink that the text names; the same bytes every time.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod support;
+use crate::support;
 
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,6 @@
 //! The answer is the first line of the terminal, and warnings follow it; a misspelt column is named.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use std::process::{Command, Stdio};
 

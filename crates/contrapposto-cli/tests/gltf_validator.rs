@@ -1,8 +1,6 @@
 //! Checks `motion.glb` with the glTF validator of Khronos, which npm installs (`gltf-validator`) into a temporary folder.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -1,8 +1,6 @@
 //! `contrapposto inspect` and `convert` through the real program, and what it will not open for a model's sake.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use std::path::Path;
 use std::time::Instant;

@@ -1,11 +1,8 @@
 //! `contrapposto minimize`: with `--literal` the answers are those of an independent reading of the printed tables; without
 //! it every good line has a sound answer; a bad line is answered with its number while the rest goes on.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-#[rustfmt::skip] // as its author left it
-mod oracle;
-mod support;
+use crate::oracle;
+use crate::support;
 
 use std::collections::BTreeMap;
 use std::io::Write as _;

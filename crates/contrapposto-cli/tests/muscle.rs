@@ -1,8 +1,6 @@
 //! `contrapposto muscle`: one muscle in a posture, through the real program.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use serde_json::Value;
 use support::{assert_png, assert_svg, json, refused, run, write};

@@ -1,32 +1,13 @@
 //! `contrapposto muscles --hold`: how long muscles hold a posture, who fails and who takes over, through the real program.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use serde_json::Value;
-use support::{Run, refused, run, shared, write};
+use support::{Run, hinge_with_muscles, refused, run, shared, write};
 
 /// A body on a hinge about z, pulled forward by muscles 0.04 m in front of the hinge, each of a greatest force (N).
 fn model(muscles: &[(&str, f64)]) -> String {
-    let muscle = |(name, force): &(&str, f64)| {
-        format!(
-            "<Thelen2003Muscle name=\"{name}\"><GeometryPath><PathPointSet><objects>
-             <PathPoint name=\"p\"><socket_parent_frame>/ground</socket_parent_frame><location>0.04 0.2 0</location></PathPoint>
-             <PathPoint name=\"o\"><socket_parent_frame>/bodyset/b</socket_parent_frame><location>0.04 -0.3 0</location></PathPoint>
-             </objects></PathPointSet></GeometryPath><max_isometric_force>{force}</max_isometric_force>
-             <optimal_fiber_length>0.1</optimal_fiber_length><tendon_slack_length>0.4</tendon_slack_length></Thelen2003Muscle>"
-        )
-    };
-    let muscles: String = muscles.iter().map(muscle).collect();
-    format!(
-        "<OpenSimDocument Version=\"40500\"><Model name=\"m\">
-         <BodySet><objects><Body name=\"b\"><mass>1</mass></Body></objects></BodySet>
-         <JointSet><objects><PinJoint name=\"j\"><socket_parent_frame>/ground</socket_parent_frame>
-           <socket_child_frame>/bodyset/b</socket_child_frame>
-           <coordinates><Coordinate name=\"q\"/></coordinates></PinJoint></objects></JointSet>
-         <ForceSet><objects>{muscles}</objects></ForceSet></Model></OpenSimDocument>"
-    )
+    hinge_with_muscles(&muscles.iter().map(|&(name, force)| (name, 0.04, force)).collect::<Vec<_>>())
 }
 
 /// The answer to a force (N) backward, 0.3 m below the hinge, with the exit code.
@@ -50,10 +31,7 @@ fn one_muscle_holds_as_long_as_the_law_of_its_joint_says() {
     let (words, found) = hold(&file, 25.0, "1h", &[]);
     assert_eq!(words.code, 1);
     let first = words.stdout.lines().next().unwrap();
-    assert!(
-        first.starts_with("The muscles hold this posture for ") && first.contains(" of 60.0\u{a0}min: "),
-        "{first}"
-    );
+    assert!(first.starts_with("The muscles hold this posture for ") && first.contains(" of 60\u{a0}min: "), "{first}");
     assert!(first.ends_with(" fails, with flexor exhausted."), "{first}");
     assert!(words.stdout.contains("First exhausted: flexor, after "), "{}", words.stdout);
     let (held, law) = (number(&found["held_s"]), &found["joint_law"]);

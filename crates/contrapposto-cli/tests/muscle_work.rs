@@ -1,33 +1,13 @@
 //! Single muscles in the answers of `assess`, `simulate` and `pose`, in their pages and glTF files, through the real program.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use serde_json::Value;
-use support::{run, write};
+use support::{hinge_with_muscles, run, write};
 
 /// A body on a hinge about z, pulled forward by two muscles 0.04 m in front of the hinge, and backward by one behind it.
 fn model() -> String {
-    let muscle = |(name, x, force): (&str, f64, f64)| {
-        format!(
-            "<Thelen2003Muscle name=\"{name}\"><GeometryPath><PathPointSet><objects>
-             <PathPoint name=\"p\"><socket_parent_frame>/ground</socket_parent_frame><location>{x} 0.2 0</location></PathPoint>
-             <PathPoint name=\"o\"><socket_parent_frame>/bodyset/b</socket_parent_frame><location>{x} -0.3 0</location></PathPoint>
-             </objects></PathPointSet></GeometryPath><max_isometric_force>{force}</max_isometric_force>
-             <optimal_fiber_length>0.1</optimal_fiber_length><tendon_slack_length>0.4</tendon_slack_length></Thelen2003Muscle>"
-        )
-    };
-    let muscles: String =
-        [("weak", 0.04, 200.0), ("strong", 0.04, 600.0), ("behind", -0.04, 500.0)].map(muscle).concat();
-    format!(
-        "<OpenSimDocument Version=\"40500\"><Model name=\"m\">
-         <BodySet><objects><Body name=\"b\"><mass>1</mass></Body></objects></BodySet>
-         <JointSet><objects><PinJoint name=\"j\"><socket_parent_frame>/ground</socket_parent_frame>
-           <socket_child_frame>/bodyset/b</socket_child_frame>
-           <coordinates><Coordinate name=\"q\"/></coordinates></PinJoint></objects></JointSet>
-         <ForceSet><objects>{muscles}</objects></ForceSet></Model></OpenSimDocument>"
-    )
+    hinge_with_muscles(&[("weak", 0.04, 200.0), ("strong", 0.04, 600.0), ("behind", -0.04, 500.0)])
 }
 
 fn number(value: &Value) -> f64 {

@@ -1,8 +1,6 @@
 //! `contrapposto muscles`, and what `inspect` says of muscles, through the real program.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use support::{json, refused, run, write};
 

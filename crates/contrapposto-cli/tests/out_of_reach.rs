@@ -1,8 +1,6 @@
 //! Targets out of reach: a run ends no farther from them than `pose`, in whatever direction they lie.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use support::{contrapposto, write};
 

@@ -1,8 +1,6 @@
 //! The body and the motion that `simulate` writes for other programs, assessed by this one, give the answer of the run.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use std::path::Path;
 

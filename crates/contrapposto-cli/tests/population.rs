@@ -1,9 +1,7 @@
 //! `contrapposto population`: all can hold what weighs nothing and nobody what is absurd, the same bytes for any number of threads and after
 //! an interruption, numbers that follow from the table, and refusals that write nothing.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,6 @@
 //! `contrapposto pose`: goals in order of priority in, a posture out.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,6 @@
 //! The answers that README.md shows are those of the program.
 
-#![allow(clippy::unwrap_used)]
-
-mod support;
+use crate::support;
 
 use std::path::Path;
 

@@ -1,9 +1,7 @@
 //! `contrapposto relax` of a published model: each posture has the strength of its own muscles, and the tissue beside the muscles of a hip decides
 //! whether a slouch is among them (docs/contrapposto.md).
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use std::fmt::Write;
 

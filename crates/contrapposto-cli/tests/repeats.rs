@@ -1,8 +1,6 @@
 //! `contrapposto assess --repeat` through the real program: sentence, JSON and page of a motion that is repeated, its warnings and refusals.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use std::fmt::Write;
 

@@ -1,9 +1,7 @@
 //! The pages of `simulate` through the real program: title, tiles, text and terminal name the same numbers, and a job that cannot be
 //! done is nowhere said to hold.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use serde_json::Value;
 use support::{column, contrapposto, page, scenarios};

@@ -1,9 +1,7 @@
 //! Result sets: whatever happens to disk or process, a named file is whole or not there, the manifest tells a whole set from a broken
 //! one, nothing of an older set stays, and an interrupted run goes on to the bytes of an unbroken one.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod support;
+use crate::support;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -331,6 +329,38 @@ fn a_folder_that_may_not_be_written_is_told() {
     );
 }
 
+/// Ctrl-C while changes are tried: the answer of the job and all its files are there, the exit code and a sentence say what is missing.
+#[cfg(unix)]
+#[test]
+fn an_answer_whose_trials_are_interrupted_is_whole_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scenario, out) = (scenarios().join("hold-tool.toml"), folder.path().join("out"));
+    let alone = simulate(&scenario, &out, &["--no-suggest"]);
+    let whole: Value = serde_json::from_slice(&std::fs::read(out.join("summary.json")).unwrap()).unwrap();
+    // The trials would take minutes. A busy machine may still be at the run.
+    for share in [1.5, 2.5, 4.0, 6.0] {
+        std::fs::remove_dir_all(&out).unwrap();
+        let words = ["--suggest-steps", "100000000"];
+        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).args(words).spawn();
+        std::thread::sleep(Duration::from_secs_f64(share * alone.seconds));
+        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        let output = child.wait_with_output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        if error.contains("interrupted at") {
+            continue;
+        }
+        assert!(error.contains("interrupted while changes of the job were tried; its answer is whole"), "{error}");
+        assert!(String::from_utf8_lossy(&output.stdout).contains("Changes of the job were not tried to their end"));
+        let summary: Value = serde_json::from_slice(&std::fs::read(out.join("summary.json")).unwrap()).unwrap();
+        assert_eq!((&summary["verdict"], &summary["partial"]), (&whole["verdict"], &Value::from(false)));
+        assert!(listed(&out).is_some_and(|files| files.contains(&"report.html".to_owned())));
+        assert!(!out.join("snapshot.json").exists());
+        return;
+    }
+    panic!("every run was interrupted before its trials; one takes {} s", alone.seconds);
+}
+
 /// Ctrl-C ends a run with whole files marked as partial; going on gives the bytes of an unbroken run.
 #[cfg(unix)]
 #[test]
@@ -342,12 +372,15 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
     let (unbroken, out) = (folder.path().join("unbroken"), folder.path().join("out"));
     let full = simulate(&scenario, &unbroken, &[]);
     assert_eq!(full.code, 0, "{}", full.stderr);
+    // The runs that are interrupted try no changes, so that the signal meets the run itself on a quick machine, too.
+    let alone = simulate(&scenario, &folder.path().join("alone"), &["--no-suggest"]);
     let mut interrupted = 0;
     let mut snapshot = vec![];
     for share in [0.3, 0.2, 0.15, 0.1, 0.05] {
         let resume = if out.join("snapshot.json").is_file() { vec!["--resume"] } else { vec![] };
-        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).args(resume).spawn();
-        std::thread::sleep(Duration::from_secs_f64(share * full.seconds));
+        let run = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).args(["--no-suggest"]).args(resume);
+        let child = run.spawn();
+        std::thread::sleep(Duration::from_secs_f64(share * alone.seconds));
         let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
         let output = child.wait_with_output().unwrap();
         let error = String::from_utf8_lossy(&output.stderr);
@@ -390,7 +423,7 @@ fn interrupted_at_once_it_shows_the_start() {
             break;
         }
         let out = folder.path().join(moment.to_string());
-        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).spawn();
+        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).args(["--no-suggest"]).spawn();
         std::thread::sleep(Duration::from_secs_f64(moment));
         let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
         let output = child.wait_with_output().unwrap();
@@ -410,7 +443,7 @@ fn interrupted_at_once_it_shows_the_start() {
 /// Number of runs that must have been killed: a few, or as many as `CONTRAPPOSTO_KILLS` says. Five hundred of each kind:
 ///
 /// ```text
-/// CONTRAPPOSTO_KILLS=500 cargo test -p contrapposto-cli --test result_sets kill -- --nocapture
+/// CONTRAPPOSTO_KILLS=500 cargo test -p contrapposto-cli kill -- --nocapture
 /// ```
 fn kills() -> u32 {
     std::env::var("CONTRAPPOSTO_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(12)

@@ -1,8 +1,6 @@
 //! `track` of animations: runs and postures of ours come back from their BVH, `assess` takes the adult that was moved, mutated files.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where; seeds are printed")]
-
-mod support;
+use crate::support;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,8 +20,7 @@ fn table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
 fn animated(folder: &Path, command: &str, scenario: &str, name: &str) -> (String, std::path::PathBuf) {
     let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(scenario);
     let out = folder.join(name);
-    let more: &[&str] = if command == "simulate" { &["--no-suggest"] } else { &[] };
-    let made = contrapposto([command]).arg(scenario).arg("--out").arg(&out).args(more).run();
+    let made = contrapposto([command, "--no-suggest"]).arg(scenario).arg("--out").arg(&out).run();
     assert!(made.code < 2, "{}", made.stderr);
     let file = |name: &str| out.join(name);
     let stem = if command == "simulate" { "motion" } else { "pose" };

@@ -1,8 +1,6 @@
 //! Robots through the real program: motors have the strength of their file and do not tire.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use std::path::Path;
 

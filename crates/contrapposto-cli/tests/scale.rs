@@ -1,8 +1,6 @@
 //! `scale`: a model comes to the size of the person whose markers are given; errors by name; mutated files.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -1,8 +1,6 @@
 //! `.glb` files of all commands: the built-in adult has a skin, the wooden figure and other bodies have none.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use std::path::Path;
 

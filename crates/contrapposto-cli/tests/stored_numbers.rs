@@ -2,9 +2,7 @@
 //!
 //! The tolerance of 1e-6 leaves room for the last digits in which the mathematical libraries of processors differ.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
-
-mod support;
+use crate::support;
 
 use std::path::Path;
 
@@ -84,7 +82,7 @@ fn a_locked_arm_with_five_kilograms_fails_first_at_the_shoulder_after_141_second
 }
 
 /// The start of a run is a minimum of effort that a search found: a better search may lower it. Before parts kept off each other it
-/// was 0.0695, with the upper arm 22 mm inside the abdomen.
+/// was 0.0695, with the upper arm 22 mm inside the abdomen; before the idle arm hung, 0.0950, with that arm held 42 degrees behind the body.
 #[test]
 fn holding_a_tool_starts_with_no_more_than_the_stored_effort() {
     let text = std::fs::read_to_string(scenarios().join("hold-tool.toml")).unwrap();
@@ -94,7 +92,7 @@ fn holding_a_tool_starts_with_no_more_than_the_stored_effort() {
     let scenario = write(folder.path(), "hold-tool.toml", &short);
     let summary = result("simulate", Path::new(&scenario), "summary.json");
     let effort = summary["standing"]["effort_at_start"].as_f64().unwrap();
-    assert!(effort > 0.0 && effort < 0.094978160591789 * (1.0 + TOLERANCE), "{effort}");
+    assert!(effort > 0.0 && effort < 0.09610473952773177 * (1.0 + TOLERANCE), "{effort}");
 }
 
 #[test]

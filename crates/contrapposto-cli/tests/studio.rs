@@ -1,8 +1,6 @@
 //! `contrapposto studio`: the page is served on this machine, and nothing else is.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-mod support;
+use crate::support;
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::TcpStream;

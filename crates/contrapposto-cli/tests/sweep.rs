@@ -1,8 +1,6 @@
 //! `contrapposto sweep`: the same bytes for any number of threads and after any kill, rows equal to single runs, refusals that write nothing.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,7 @@
 //! `contrapposto torques` through the real program: numbers of OpenSim and Pinocchio, the shape of the JSON, and what it
 //! says to arguments that make no sense.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use serde_json::Value;
 use support::{json, keys, leg, numbers, refused, run, shared, vectors, write};

@@ -1,8 +1,6 @@
 //! `track`: measured markers in, a motion that `assess` reads out; warnings by name; mutated files.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where")]
-
-mod support;
+use crate::support;
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark prints")]
 
 #[path = "../tests/common/hands.rs"]
+#[allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "tests use other parts")]
 mod hands;
 
 use std::hint::black_box;

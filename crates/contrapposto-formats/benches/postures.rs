@@ -5,7 +5,11 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark prints")]
 
 #[path = "../tests/common/peer.rs"]
+#[allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "tests use other parts")]
 mod peer;
+#[path = "../tests/common/shared.rs"]
+#[allow(unreachable_pub, reason = "tests include this file as a module")]
+mod shared;
 
 use std::time::Instant;
 

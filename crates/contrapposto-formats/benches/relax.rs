@@ -6,8 +6,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a table for people to read")]
 
-#[path = "../tests/effort/mod.rs"]
-mod effort;
+#[path = "../tests/effort/problem.rs"]
+#[allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "tests use other parts")]
+mod problem;
+#[path = "../tests/common/shared.rs"]
+#[allow(unreachable_pub, reason = "tests include this file as a module")]
+mod shared;
 
 use std::path::Path;
 use std::time::Instant;
@@ -26,10 +30,10 @@ fn median(values: &[f64]) -> f64 {
 }
 
 fn run(file: &Path, name: &str, standing: bool, options: Options) {
-    let problem = effort::Problem::read(standing);
+    let problem = problem::Problem::read(standing);
     let (mut ours, mut peers, mut shares, mut steps) = (vec![], vec![], vec![], vec![]);
     let (mut no_worse, mut held, mut worst) = (0, 0, 0f64);
-    let targets = effort::targets(file, name);
+    let targets = problem::targets(file, name);
     for (i, target) in targets.iter().enumerate() {
         let mut engine = problem.engine(target.target, options);
         let mut times = vec![];
@@ -42,7 +46,7 @@ fn run(file: &Path, name: &str, standing: bool, options: Options) {
         let pose = last.unwrap();
         let ratio = pose.effort / target.effort;
         no_worse += usize::from(ratio <= 1.0 + SAME);
-        held += usize::from(effort::holds(&pose));
+        held += usize::from(problem::holds(&pose));
         worst = worst.max(pose.levels[0].length).max(pose.slip.length());
         println!(
             "{i:2} effort {:9.3} peer {:9.3} ratio {ratio:6.3}  hand {:.0e} m  slip {:.0e}  {:?} {:?}, {} steps, {:.2} ms",

@@ -131,11 +131,13 @@ pub struct GreatestSlipText {
     pub at_s: f64,
 }
 
-/// A support that was put elsewhere.
+/// A support that was put elsewhere, put down to rest or taken up again.
 #[derive(Clone, Debug, Serialize)]
 pub struct StepText {
     /// Segment.
     pub segment: String,
+    /// `elsewhere`, `put_down` or `taken_off`.
+    pub kind: &'static str,
     /// The coordinate whose tired group asked for relief.
     pub relieves: String,
     /// Time at which the body began to shift its weight, s.
@@ -281,6 +283,7 @@ impl StepText {
         let model = &scenario.model;
         Self {
             segment: model.segments()[scenario.supports[step.support].segment].name.clone(),
+            kind: step.kind.word(),
             relieves: model.coordinates()[step.coordinate].name.clone(),
             begin_s: step.time.0,
             end_s: step.time.1,

@@ -16,7 +16,12 @@ pub struct Thing {
     pub segment: Option<usize>,
     /// Of a thing that does not turn with its segment: the point about which it swings.
     pub swing: Option<Swing>,
+    /// Of a carried thing that is put down in a run: the time from which on it is not there, s.
+    pub until: Option<f64>,
 }
+
+/// A thing is put down at times from so long before `until` on, s.
+const PUT_DOWN_TOLERANCE: f64 = 1e-9;
 
 /// A thing that keeps a direction while its segment carries it: a bag that hangs, a tool that is pressed against something.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +35,12 @@ pub struct Swing {
 impl Thing {
     /// A box in ground, or in the frame of a segment.
     pub fn new(name: &str, size: [f64; 3], place: Isometry3<f64>, segment: Option<usize>) -> Self {
-        Self { name: name.to_owned(), size: size.into(), place, segment, swing: None }
+        Self { name: name.to_owned(), size: size.into(), place, segment, swing: None, until: None }
+    }
+
+    /// Whether it is not yet put down at a time of a run, s.
+    pub fn is_there(&self, time: f64) -> bool {
+        self.until.is_none_or(|until| time < until - PUT_DOWN_TOLERANCE)
     }
 
     /// Placement in ground, given that of the segment which carries it.

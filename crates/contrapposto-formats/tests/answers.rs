@@ -1,7 +1,5 @@
 //! The answer names the weights that are too heavy for a hand, hips at their passive end, and a group that failed before an overload.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::model::{Adult, Sex, adult};
 use contrapposto::simulation::{Scenario, run as simulate};
 use contrapposto::verdict::{HandLoad, Line, Verdict, VerdictKind};
@@ -93,10 +91,8 @@ fn hips_bent_beyond_a_hundred_degrees_on_passive_tissue_are_a_hazard() {
     };
     let verdict = bent(115.0, 300.0);
     assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
-    for side in ["right", "left"] {
-        let words = format!("{side} hip bent by 115\u{b0}");
-        assert!(verdict.sentence.contains(&words), "{words}: {}", verdict.sentence);
-    }
+    assert!(verdict.sentence.contains("right and left hip bent by 115\u{b0}"), "{}", verdict.sentence);
+    assert_eq!(verdict.hazards.len(), 2, "{:?}", verdict.hazards);
     assert!(verdict.hazards.iter().all(|hazard| hazard.carried() >= 0.5 && hazard.row.finding.contains("21 people")));
     assert!(bent(95.0, 300.0).hazards.is_empty(), "{}", bent(95.0, 300.0).sentence);
     assert!(bent(115.0, 900.0).hazards.is_empty(), "{}", bent(115.0, 900.0).sentence);
@@ -140,7 +136,7 @@ fn a_group_that_rests_at_the_end_has_failed_before_in_weaker_people() {
     let weaker = verdict.fails_weaker.unwrap();
     assert_eq!(weaker.load, 0.0, "{}", verdict.in_words());
     assert!(verdict.least.unwrap() < held && !verdict.has_reserve(), "{:?}", verdict.least);
-    let words = format!(", but in weaker people (one in six) {} fails within ", weaker.name(&scenario.model));
+    let words = format!(", but in weaker people (the weakest sixth) {} fails within ", weaker.name(&scenario.model));
     assert!(verdict.sentence.contains(&words), "{}", verdict.sentence);
 }
 
@@ -175,7 +171,7 @@ fn a_tired_group_without_a_limit_is_told_to_become_no_more_tired() {
         assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
         let tired = verdict.tired.unwrap();
         assert!(tired.fatigue > 0.5, "{}", verdict.sentence);
-        assert_eq!(tired.lasts, verdict.in_words().contains("; at its load it becomes no more tired"));
+        assert_eq!(tired.lasts, verdict.in_words().contains("; under this load it tires no further"));
         (tired.lasts, verdict.in_words())
     };
     let (lasts, sentence) = arm(0.0);

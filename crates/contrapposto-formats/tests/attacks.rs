@@ -1,6 +1,6 @@
 //! Hostile and broken model files: each is refused with the message that `attacks/expected.txt` has for it.
 
-mod common;
+use crate::common;
 
 use common::here;
 use contrapposto_formats::{mjcf, urdf};

@@ -1,9 +1,6 @@
 //! Compares batches with one posture at a time on published models: free and fixed roots, coupled and function-driven coordinates.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/shared.rs"]
-mod shared;
+use crate::common::shared;
 
 use contrapposto::batch::{Statics, Table, Wanted};
 use contrapposto::joint_torques::{JointTorques, Quantities};

@@ -1,9 +1,6 @@
 //! Tests the reader of C3D files: all kinds of computers, long trials, faults with their places, mutations, and other programs' numbers.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where")]
-
-#[path = "common/c3d.rs"]
-mod writer;
+use crate::common::c3d as writer;
 
 use std::path::PathBuf;
 

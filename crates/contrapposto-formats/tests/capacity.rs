@@ -1,9 +1,6 @@
 //! Compares the forces of fixed arms with the force polytopes of pycapacity, which `scripts/compare_capacity.py` wrote.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-#[path = "common/hands.rs"]
-mod hands;
+use crate::common::hands;
 
 use contrapposto::posture::Posture;
 use hands::{Body, arm};

@@ -1,9 +1,6 @@
 //! Tests forces of bodies whose muscles share the torques of joints, against the closed form of a zonotope.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/muscled_arm.rs"]
-mod muscled_arm;
+use crate::common::muscled_arm;
 
 use std::fmt::Write as _;
 

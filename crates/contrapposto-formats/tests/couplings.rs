@@ -1,8 +1,6 @@
 //! Tests dependent coordinates, also of dependent ones: torques and gradients by central differences, beside a
 //! model whose chains were composed by hand, and beside OpenSim.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "what the tests share may fail like a test")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::Function;
 use contrapposto::model::{CoordinateSpec, JointKind, Model, ModelBuilder, SegmentSpec};

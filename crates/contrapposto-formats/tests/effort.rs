@@ -4,11 +4,10 @@
 //! are named in the file). Effort has many local minima, so on some targets the peer's is lower: at least so many must be no worse,
 //! and no hand may be off its target, no foot off its place, no root out of balance.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "effort/mod.rs"]
+#[allow(dead_code, reason = "the benchmark of effort uses the rest")]
 mod problem;
 
+use crate::common::shared;
 use std::path::PathBuf;
 
 use contrapposto::posture_solver::{Options, Reason};

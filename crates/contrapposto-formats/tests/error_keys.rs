@@ -1,8 +1,6 @@
 //! An error of the science crate points at the key of the file whose value was refused: line and column of every mapping.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
+use crate::common;
 
 use common::complaint;
 use contrapposto_formats::{InputError, read_pose, read_scenario};

@@ -1,7 +1,5 @@
 //! Tests events during a run: strategies, loads, targets.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
 use std::path::Path;
 
 use contrapposto::contact::Slip;
@@ -138,4 +136,33 @@ fn a_target_is_moved_and_the_hand_follows() {
         assert!(!there || off < 1e-4, "{} s: {off} m", sample.time);
         assert!(imbalance(&scenario.model, sample) < 1e-8);
     });
+}
+
+/// A thing that a hand carries is there until nothing loads the hand; a lighter load is still there, and so is what both hands hold in its place.
+#[test]
+fn what_is_put_down_is_there_until_its_event() {
+    let job = |things: &str, events: &str| {
+        let text = format!(
+            "format = 1\ntitle = \"a\"\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 73 }}\n[strategy]\nkind = \"active\"\n[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n{things}\n\
+             [run]\nduration_s = 30\nstep_s = 1\n{events}"
+        );
+        let read = contrapposto_formats::read_run("scenario.toml", text.as_bytes(), None);
+        read.unwrap_or_else(|error| panic!("{:?}", miette::Report::new(error))).things
+    };
+    let put_down = "[[event]]\nat_s = 20\nload = []\n";
+    let lighter = "[[event]]\nat_s = 10\nload = [{ segment = \"hand_r\", mass_kg = 1 }]\n";
+    let until = |things: &str, events: &str| -> Vec<Option<f64>> {
+        job(things, events).iter().map(|thing| thing.until).collect()
+    };
+    let bag = "[[bag]]\non = \"right_hand\"\nmass_kg = 3\n";
+    assert_eq!(until(bag, ""), [None, None], "bag and strap");
+    assert_eq!(until(bag, put_down), [Some(20.0); 2]);
+    assert_eq!(until(bag, lighter), [None; 2]);
+    assert_eq!(until(bag, &format!("{lighter}{put_down}")), [Some(20.0); 2]);
+    let weight = "[[load]]\nsegment = \"hand_l\"\nmass_kg = 3\n";
+    assert_eq!(until(weight, lighter), [Some(10.0)], "the load of the other hand is another one");
+    let held = "[[box]]\nmass_kg = 4\nsize_m = [0.3, 0.2, 0.3]\nat_m = [0.35, 1.0, 0.0]\n";
+    assert_eq!(until(held, put_down), [None], "its place stays");
+    let thing = &job(bag, put_down)[0];
+    assert!(thing.is_there(19.9) && !thing.is_there(20.0) && !thing.is_there(25.0));
 }

@@ -1,8 +1,6 @@
 //! OpenSim's expressions mean here what they mean there. Values from OpenSim 4.6 (`scripts/opensim_reference.py`); slopes are
 //! held to the values by central differences, of OpenSim's own grammar through ours.
 
-#![allow(clippy::print_stdout, clippy::unwrap_used)] // helpers of tests
-
 use contrapposto_formats::osim::expression::{ExpressionError, MOST_DEPTH, MOST_EXPRESSION_BYTES, parse};
 use serde_json::Value;
 

@@ -1,8 +1,6 @@
 //! The fatigue law that a scenario names reaches every muscle group, of the built-in adult and of a model file, and no group whose
 //! law an overlay names.
 
-#![allow(clippy::unwrap_used)]
-
 use contrapposto::model::{Model, Sex};
 use contrapposto_formats::tissue::{FatigueChoice, SourcedModel, fatigue_notes};
 use contrapposto_formats::{read_relax, scenario_model};

@@ -1,10 +1,7 @@
 //! Tests the forces of force plates of C3D files: wrenches that are written into channels of all types come back, stances find their feet, mutations,
 //! and another program's numbers.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where")]
-
-#[path = "common/c3d.rs"]
-mod writer;
+use crate::common::c3d as writer;
 
 use std::path::PathBuf;
 

@@ -1,7 +1,5 @@
 //! Animations of glTF files: motions of the adult come back from its own files, keys of all kinds, scales, other buffers, refusals and mutations.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where; seeds are printed")]
-
 use std::collections::BTreeMap;
 
 use contrapposto::model::{Adult, Model, Placement, adult};

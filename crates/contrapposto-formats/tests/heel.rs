@@ -2,8 +2,6 @@
 //!
 //! Balance is computed anew from weights and contact forces; heights of the heel by plane geometry.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use std::path::Path;
 
 use contrapposto::contact::{Balance, ContactForces};

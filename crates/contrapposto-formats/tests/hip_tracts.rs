@@ -1,7 +1,5 @@
 //! Tests that capsule and iliotibial tract stand beside the muscles of a hip, and nowhere else.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
 use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::passive::PassiveLaw;
 use contrapposto::posture::Posture;

@@ -1,7 +1,5 @@
 //! Hands held before the body, as in docs/holding-times.md: the group that fails first, and the class of Miedema et al. 1997.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
 use contrapposto::simulation::run;
 use contrapposto::suggestions::Advice;
 use contrapposto_formats::{SummaryText, read_scenario};

@@ -2,10 +2,7 @@
 //! that our writers wrote (`written/`) and of published models (`../shared`). Filters, splines and inverse dynamics of motions are
 //! compared with OpenSim's (`scripts/rates_reference.py`).
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/shared.rs"]
-mod shared;
+use crate::common::shared;
 
 use std::path::Path;
 

@@ -1,10 +1,7 @@
 //! Compares forces and moments of joints with OpenSim's JointReaction analysis, of published models that are not in this project: five random
 //! postures at rest under random tensions of all muscles (`scripts/opensim_reactions.py`).
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/shared.rs"]
-mod shared;
+use crate::common::shared;
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +11,6 @@ use contrapposto::muscle::{PathGeometry, PathRule};
 use contrapposto_formats::osim;
 use nalgebra::Vector3;
 use serde_json::Value;
-use shared::shared;
 
 fn names(value: &Value) -> Vec<&str> {
     value.as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect()

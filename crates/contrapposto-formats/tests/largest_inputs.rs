@@ -3,13 +3,10 @@
 //! The suite tries a few inputs of each kind; twenty of each, which shapes and sizes vary:
 //!
 //! ```text
-//! CONTRAPPOSTO_LARGEST=20 cargo test --release -p contrapposto-formats --test largest_inputs -- --nocapture
+//! CONTRAPPOSTO_LARGEST=20 cargo test --release -p contrapposto-formats largest_inputs -- --nocapture
 //! ```
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
-
 use std::fmt::Write;
-use std::time::{Duration, Instant};
 
 use contrapposto::model::{Adult, adult};
 use contrapposto::simulation::Run;
@@ -17,6 +14,8 @@ use contrapposto_formats::loads::external_loads;
 use contrapposto_formats::motion::{MOST_NUMBERS, MOST_TABLE_BYTES, read_table};
 use contrapposto_formats::xml::Limits;
 use contrapposto_formats::{MOST_BYTES, overlay, read_model, read_pose, read_relax, read_scenario};
+
+use crate::common::processor_time;
 
 /// Inputs of each kind in the suite; `CONTRAPPOSTO_LARGEST` asks for others.
 const INPUTS: usize = 5;
@@ -26,24 +25,16 @@ const MOST_MEMORY: f64 = 64.0;
 const MOST_SECONDS: f64 = 1.0;
 const MEBIBYTE: f64 = (1 << 20) as f64;
 
-/// Time of this thread on the processor, where the system tells it: other programs do not count.
-fn processor_time(start: Instant) -> Duration {
-    let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let on_processor = statistics.split(' ').next().and_then(|ns| ns.parse().ok());
-    on_processor.map_or_else(|| start.elapsed(), Duration::from_nanos)
-}
-
 /// Reads the inputs of a kind; `read` says whether an input was accepted.
 fn is_modest(kind: &str, make: impl Fn(usize) -> String, read: impl Fn(&[u8]) -> bool) {
     let count = std::env::var("CONTRAPPOSTO_LARGEST").map_or(INPUTS, |text| text.parse().unwrap());
     let (mut accepted, mut worst, mut largest) = (0, [0.0_f64; 2], 0);
-    let start = Instant::now();
     for i in 0..count {
         let input = make(i);
-        let before = processor_time(start);
+        let before = processor_time();
         let mut is_read = false;
         let memory = allocation_counter::measure(|| is_read = read(input.as_bytes())).bytes_max as f64;
-        let seconds = (processor_time(start) - before).as_secs_f64();
+        let seconds = (processor_time() - before).as_secs_f64();
         let size = (input.len() as f64 / MEBIBYTE).max(1.0);
         let [memory, seconds] = [memory / size / MEBIBYTE, seconds / size];
         println!("{kind} {i}: {size:.1} MiB, accepted {is_read}, {memory:.1} MiB and {seconds:.3} s a MiB");
@@ -405,10 +396,10 @@ fn external_loads_of_16_mib_need_at_most_64_mib_and_1_s_for_each_mib() {
     is_modest("ExternalLoads", make, |bytes| external_loads(bytes).is_ok());
 }
 
-/// The solver's memory grows with the square of the number of tasks, which are at most 150.
+/// The solver's memory grows with the square of the number of tasks, which are at most 80.
 #[test]
 fn a_run_with_as_many_tasks_as_are_allowed_needs_at_most_64_mib() {
-    let tasks: String = (0..150).map(|_| tables_of_a_job(0, 0)).collect();
+    let tasks: String = (0..80).map(|_| tables_of_a_job(0, 0)).collect();
     let feet = "[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n";
     let text = format!("format = 1\n[strategy]\nkind = \"active\"\n{feet}{tasks}[run]\nduration_s = 1\nstep_s = 0.1\n");
     let scenario = read_scenario("s.toml", text.as_bytes(), None).unwrap();
@@ -417,6 +408,6 @@ fn a_run_with_as_many_tasks_as_are_allowed_needs_at_most_64_mib() {
         while run.next_sample().unwrap().is_some() {}
     });
     let memory = memory.bytes_max as f64 / MEBIBYTE;
-    println!("150 tasks: {memory:.1} MiB");
+    println!("80 tasks: {memory:.1} MiB");
     assert!(memory <= MOST_MEMORY);
 }

@@ -1,7 +1,5 @@
 //! Tests the readers of marker files and of tracking tasks: forms that tools write, faults with their places, mutations.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where")]
-
 use contrapposto_formats::markers::{MarkerUnit, TaskValue, read_trc, tracking_tasks};
 use contrapposto_formats::tissue::SourcedModel;
 use miette::Diagnostic;

@@ -1,8 +1,6 @@
 //! MJCF models as bodies: against MuJoCo's own numbers, and what is refused where.
 
-#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "what the tests share may fail like a test")]
-
-mod common;
+use crate::common;
 
 use common::{center_of_mass, difference, frames, hammer, here, shared};
 use contrapposto_formats::mjcf::{self, MjcfError, Options};

@@ -1,9 +1,6 @@
 //! Tables of motion: read, turned into postures, written, refused with a place.
 
-#![allow(clippy::unwrap_used, reason = "helpers outside test functions")]
-
-mod common;
-#[path = "motion_parts/hostile.rs"]
+use crate::common;
 mod hostile;
 
 use common::next;
@@ -429,4 +426,21 @@ fn a_wrong_number_of_rows_or_columns_in_the_header_is_a_warning_with_its_line() 
     }
     let text = "motion\nnRows=2\nendheader\ntime\telbow_flex_r\n0\t1\n1\t2\n";
     assert!(read_table("m.sto", text.as_bytes()).unwrap().warnings.is_empty());
+}
+
+/// A time by another name would be left out in silence, and rows would last a second each.
+#[test]
+fn time_is_known_by_its_usual_names_and_what_is_like_it_is_refused() {
+    for name in ["time", "Time", "time_s", "Time (s)", "time [s]"] {
+        let table = read(&format!("{name},knee\n0,1\n600,2\n"));
+        assert_eq!((table.times, table.columns), (vec![0.0, 600.0], vec!["knee".to_owned()]), "{name}");
+        assert!(read_table("file", format!("knee,{name}\n0,1\n").as_bytes()).is_err(), "{name} after a value");
+    }
+    assert!(write_sto("n", &[("time_s", Rotation)], true, &[0.0], &[[1.0]]).is_err());
+    for name in ["t", "time_ms", "timestamp", "Seconds", "TimeCode (ms)"] {
+        let error = read_table("file", format!("{name},knee\n0,1\n600,2\n").as_bytes()).unwrap_err();
+        let text = format!("{error} {}", error.help().unwrap());
+        assert!(text.contains(&format!("`{name}`, is like a time")) && text.contains("name it `time`"), "{text}");
+        assert_eq!(read(&format!("knee,{name}\n0,1\n600,2\n")).columns, ["knee", name]);
+    }
 }

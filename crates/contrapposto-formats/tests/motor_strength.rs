@@ -1,7 +1,5 @@
 //! Strength of motors: `effort` of URDF, limits of actuators and joints of MJCF, and models without them.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::model::{Model, Side};
 use contrapposto_formats::tissue::{FatigueChoice, Person, SourcedModel};

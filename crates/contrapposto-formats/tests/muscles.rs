@@ -1,11 +1,7 @@
 //! Compares lengths, moment arms and forces of muscles with OpenSim's, of published models that are not in this project.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/muscle_reference.rs"]
-mod muscle_reference;
-#[path = "common/shared.rs"]
-mod shared;
+use crate::common::muscle_reference;
+use crate::common::shared;
 
 use std::io::Read;
 
@@ -20,7 +16,6 @@ use contrapposto::statics::{ExternalTorque, PathTension};
 use contrapposto_formats::osim;
 use contrapposto_formats::tissue::{MuscleUse, Person, SourcedModel};
 use muscle_reference::{Reference, model_bytes};
-use shared::shared;
 
 /// Largest errors that are allowed.
 #[derive(Clone, Copy)]

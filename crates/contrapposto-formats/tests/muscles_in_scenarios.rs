@@ -1,11 +1,7 @@
 //! Runs scenarios of a model whose muscles give strength and passive torque, and compares every sample with the muscles in its posture.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/muscled_arm.rs"]
-mod muscled_arm;
-#[path = "common/shared.rs"]
-mod shared;
+use crate::common::muscled_arm;
+use crate::common::shared;
 
 use std::time::Instant;
 
@@ -16,7 +12,6 @@ use contrapposto::posture::Posture;
 use contrapposto::simulation::{Run, Scenario};
 use contrapposto_formats::tissue::MuscleUse;
 use muscled_arm::{arm, opened, scenario};
-use shared::shared;
 
 /// The same with a bushing about the elbow, so that its passive torque falls with the angle.
 fn sprung_arm() -> String {

@@ -1,12 +1,8 @@
 //! Tests runs in which muscles tire one by one: against the law of one muscle, a posture that is held, the strength of all muscles together,
 //! and the same run resumed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/muscled_arm.rs"]
-mod muscled_arm;
-#[path = "common/shared.rs"]
-mod shared;
+use crate::common::muscled_arm;
+use crate::common::shared;
 
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::joint_torques::{JointTorques, Quantities};
@@ -20,7 +16,6 @@ use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::{MuscleUse, ScenarioMuscles};
 use contrapposto_formats::{RunScenario, read_run};
 use muscled_arm::{arm, arm_on, opened, scenario};
-use shared::shared;
 
 /// A forearm that is held, 15 degrees bent, with 4 kg, for so many seconds.
 fn held(seconds: f64, more: &str) -> String {

@@ -1,9 +1,6 @@
 //! Compares lengths, moment arms and forces of muscles with MuJoCo's, of published models that are not in this project.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/shared.rs"]
-mod shared;
+use crate::common::shared;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -14,7 +11,6 @@ use contrapposto::muscle::{Musculature, PathGeometry, PathRule};
 use contrapposto_formats::mjcf;
 use contrapposto_formats::model_ir::ModelIr;
 use serde_json::Value;
-use shared::shared;
 
 /// The models of the vectors, and where they are in myo_sim.
 const MODELS: [(&str, &str); 6] = [

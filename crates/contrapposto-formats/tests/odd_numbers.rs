@@ -2,9 +2,7 @@
 //! one after the other: a number that is not finite is refused where it stands, or has no part in the result; and all numbers
 //! computed from an accepted file are finite. Scenarios of runs: `scenario.rs`; decisions a line: `contrapposto-cli/tests/minimize.rs`.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod common;
+use crate::common;
 
 use std::fmt::Debug;
 

@@ -1,18 +1,13 @@
 //! The `.osim` reader: bodies are where OpenSim 4.6 puts them, functions and forces have its values, and what matters and is
 //! not supported is refused with its place. References: `scripts/opensim_reference.py`; published models in `../shared`.
 
-#![allow(clippy::print_stdout, clippy::unwrap_used)] // helpers of tests
-
-#[path = "common/shared.rs"]
-mod files;
+use crate::common::shared;
 
 use contrapposto_formats::model_ir::{CoordinateKind, Drive, Function, ModelIr, MotionIr, PassiveLawIr, Spline};
 use contrapposto_formats::osim;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde_json::Value;
 use std::path::Path;
-
-use files::shared;
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| value.as_str().unwrap().parse().unwrap())

@@ -1,8 +1,6 @@
 //! Tests the refusals of the `.osim` reader, and that any bytes end in a body or an error, in time linear in their number.
 
-#![allow(clippy::print_stdout, clippy::unwrap_used)] // helpers of tests
-
-mod common;
+use crate::common;
 
 use common::hammer;
 use contrapposto_formats::model_ir::{Drive, MotionIr, PassiveLawIr};

@@ -1,9 +1,7 @@
 //! The overlay reader is total: any bytes give a model with finite torques, or an error that names the file. The meaning of
 //! an overlay is tested with the program (`contrapposto-cli/tests/torques.rs`).
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
+use crate::common;
 
 use common::toml::hammer_toml;
 use contrapposto::model::{Adult, Model, adult};

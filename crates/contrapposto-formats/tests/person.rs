@@ -1,7 +1,5 @@
 //! Built-in strength and passive torque of a model file are those of a person of its mass, or of the person that is given.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::model::{Adult, Model, Sex, adult};
 use contrapposto_formats::person;
 use contrapposto_formats::tissue::{Person, SourcedModel};

@@ -1,9 +1,7 @@
 //! The reader of pose scenarios: every kind of task means what docs/scenario.md says, every mistake is refused where it
 //! stands, and any bytes give a value or an error.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod common;
+use crate::common;
 
 use std::path::Path;
 

@@ -1,9 +1,6 @@
 //! Solves the published peer problem (`common/peer.rs`): targets within reach are reached, others are met at their nearest.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/peer.rs"]
-mod peer;
+use crate::common::peer;
 
 use contrapposto::posture_solver::{Engine, Options, Reason};
 use nalgebra::Vector3;

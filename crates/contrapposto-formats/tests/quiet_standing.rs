@@ -3,8 +3,6 @@
 //! The natural posture is that of least effort with the chest upright: both soles on the ground, the pelvis level and straight
 //! ahead, the centre of mass midway between the feet, the head level where there is one, the arms hanging. The table of all bodies is in `docs/strength.md`.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
 use contrapposto::equilibria::{Work, equilibria};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::data::library;
@@ -14,9 +12,7 @@ use contrapposto::posture_solver::Options;
 use contrapposto_formats::read_relax;
 use contrapposto_formats::tissue::{Person, SourcedModel};
 
-#[path = "common/shared.rs"]
-mod files;
-use files::shared;
+use crate::common::shared;
 
 /// Corners of the sole in the axes of `calcn` of OpenSim's models, m: heel and ball of the foot.
 const SOLE: &str = "[[0, -0.0282, -0.03], [0, -0.0282, 0.03], [0.179, -0.0282, 0.0495], [0.179, -0.0282, -0.0495]]";

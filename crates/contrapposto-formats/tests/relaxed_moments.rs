@@ -1,28 +1,19 @@
 //! Derives the load of the shoulders anew, in every posture that the search for least effort finds in the scenarios of the
 //! repository: the moment of weights, loads and contact forces summed up in ground, passive torque from differences of energy.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-use std::path::Path;
-
 use contrapposto::contact::ContactForces;
-use contrapposto::equilibria::equilibria;
 use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::model::{Model, Side, ThreeAxisJoint};
-use contrapposto::posture_solver::Options;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
-use contrapposto_formats::{RelaxScenario, read_relax};
+use contrapposto_formats::RelaxScenario;
 use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::common::runs::searches;
 
 type V = Vector3<f64>;
 
 /// Step of the differences of energy, rad.
 const STEP: f64 = 1e-5;
-
-fn scenario(name: &str) -> RelaxScenario {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(name);
-    read_relax(name, &std::fs::read(path).unwrap(), None).unwrap_or_else(|e| panic!("{:?}", miette::Report::new(e)))
-}
 
 /// Moment about the centre of a joint of all that acts on the segments that it carries, in the distal frame, N m.
 fn moment(model: &Model, body: &JointTorques, joint: &ThreeAxisJoint, loads: &[Load]) -> V {
@@ -81,11 +72,8 @@ fn load_of_the_shoulders_is_that_of_their_moment_in_every_posture_found() {
         "stand-relaxed.toml",
         "stand-shifting.toml",
     ] {
-        let scenario = scenario(name);
-        let RelaxScenario { model, supports, loads, .. } = &scenario;
-        let search = scenario.search();
-        let options = Options { max_step: 0.1, max_steps: 40, ..Options::least_effort() };
-        let found = equilibria(&search, options).unwrap();
+        let (_, RelaxScenario { model, supports, loads, .. }, found) =
+            searches().iter().find(|(found, ..)| found == name).unwrap();
         let mut body = JointTorques::new(model);
         let mut contact = ContactForces::new(model, supports.clone()).unwrap();
         for posture in &found.postures {

@@ -1,8 +1,5 @@
 //! Animations of rigs: the reader of BVH, names, units and axes, and motions that come back as the adult's angles.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where; seeds are printed")]
-
-#[path = "rigs_parts/rig_text.rs"]
 mod rig_text;
 
 use std::collections::BTreeMap;

@@ -3,9 +3,7 @@
 //! The small humanoid of the project is compared everywhere; published robots in the folder that `CONTRAPPOSTO_ROBOT_MODELS`
 //! names, after `scripts/pinocchio_reference.py FOLDER` and `scripts/mujoco_reference.py FOLDER` wrote their numbers beside them.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-mod common;
+use crate::common;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

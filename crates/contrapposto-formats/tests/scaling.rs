@@ -1,7 +1,5 @@
 //! Scaling of OpenSim models: a model of k times the size is the model seen from k times as near, whatever it holds.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
-
 use std::collections::BTreeMap;
 
 use contrapposto::kinematics::Kinematics;

@@ -1,9 +1,7 @@
 //! The scenario reader is total: any bytes give an experiment or an error, never a panic; and an accepted experiment runs
 //! without a number that is not finite.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod common;
+use crate::common;
 
 use std::path::Path;
 
@@ -71,6 +69,7 @@ stop_when_settled = false
 /// A body on its feet, with every key of supports, events and strategies.
 const WHOLE: &str = r#"format = 1
 title = "On both feet"
+least_effort = false
 [model]
 adult = { sex = "female", stature_m = 1.65, mass_kg = 60 }
 [posture]
@@ -263,7 +262,11 @@ fn a_whole_body_is_read() {
     }
     let tasks: Vec<(usize, bool)> =
         scenario.tasks.iter().map(|task| (task.goal.tasks.len(), task.above_relief)).collect();
-    assert_eq!(tasks, [(1, true), (2, false), (1, false)], "`head level` is added to the gaze");
+    assert_eq!(
+        tasks,
+        [(1, true), (2, false), (1, false), (1, false)],
+        "`head level` is added to the gaze, and a task for the idle arm"
+    );
     // A coordinate's own word, then its region's, then that of the whole body.
     let strategy = |list: &[Strategy], name: &str| list[model.coordinate(name).unwrap()];
     for (name, start, later) in [

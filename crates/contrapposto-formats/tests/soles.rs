@@ -1,7 +1,5 @@
 //! Soles of robots from their shapes for contact, and the polygon over which a centre of mass is asked.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::model::Model;
 use contrapposto::tasks::{CenterOfMassGoal, HalfPlane, Task};
 use contrapposto_formats::model_ir::RootAttachment;

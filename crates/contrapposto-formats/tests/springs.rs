@@ -1,7 +1,5 @@
 //! Compares ligaments, path springs and bushings with OpenSim's (`scripts/opensim_springs.py`), with closed forms and with energies.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::{Function, Spline};
 use contrapposto::muscle::{LigamentLaw, PathGeometry, PathRule, bushing_torque, passive_torque};

@@ -1,7 +1,5 @@
 //! Whole bodies over time, from the scenarios of the repository: the reliefs and their effect.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
 use std::path::{Path, PathBuf};
 
 use contrapposto::kinematics::Kinematics;

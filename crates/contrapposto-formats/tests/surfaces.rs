@@ -1,9 +1,7 @@
 //! Patches lie on their surfaces at the start: feet on the floor or on a step, palms flat, soft parts in the shape of the seat; or
 //! they are refused with distance and angle.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
+use crate::common;
 
 use common::complaint;
 use contrapposto::contact::Support;
@@ -54,10 +52,10 @@ fn feet_above_or_below_the_floor_are_put_on_it() {
         assert!(note(&scenario, way), "{:?}", scenario.notes);
     }
     // The default posture stands on the floor as it is; `ground` is where the patch is.
-    let scenario = read(&format!("upright = false\n{FEET}"));
+    let scenario = read(&format!("upright = false\narms_hang = false\n{FEET}"));
     assert!(scenario.notes.is_empty(), "{:?}", scenario.notes);
     let ground = FEET.replace("\"\n", "\"\non = \"ground\"\n");
-    let scenario = read(&format!("upright = false\n[posture]\npelvis_ty_m = 1.5\n{ground}"));
+    let scenario = read(&format!("upright = false\narms_hang = false\n[posture]\npelvis_ty_m = 1.5\n{ground}"));
     assert!(scenario.notes.is_empty() && heights(&scenario)[0][0] > 0.5, "{:?}", scenario.notes);
 }
 

@@ -1,7 +1,5 @@
 //! Plans of many runs are read or refused by name with line and column, and their values reach the scenario as if they were written there.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto_formats::{Design, Distribution, InputError, Template, Value, read_plan, read_run, scenario_model};
 use miette::Diagnostic;
 

@@ -1,7 +1,5 @@
 //! Tests muscles of MJCF files on a small body: lengths, moment arms and forces in closed form, and arms against differences of lengths.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::muscle::{FiberState, Location, Musculature, PathGeometry, PathRule};

@@ -3,9 +3,7 @@
 //! that drive joints, couplings, balls, slides and a free root are among them. Random trees without files:
 //! `contrapposto/tests/statics.rs`. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod common;
+use crate::common;
 
 use common::{frames, here};
 use contrapposto::kinematics::Kinematics;

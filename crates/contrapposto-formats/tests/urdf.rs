@@ -1,8 +1,6 @@
 //! URDF models as bodies: a hand-made one by hand, published ones against Pinocchio's order and their MJCF twins.
 
-#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "what the tests share may fail like a test")]
-
-mod common;
+use crate::common;
 
 use common::{center_of_mass, difference, frames, hammer, here, shared};
 use contrapposto_formats::model_ir::{CoordinateKind, Function, ModelIr, MotionIr, RootAttachment};

@@ -3,10 +3,7 @@
 //!
 //! The tools print the torques that actuators must supply; our external torque is minus that.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-#[path = "common/shared.rs"]
-mod shared;
+use crate::common::shared;
 
 use std::path::Path;
 

@@ -1,8 +1,6 @@
 //! Things of the world by name: each becomes the loads, supports, tasks and obstacles that the longhand would give.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
+use crate::common;
 
 use common::complaint;
 use contrapposto::kinematics::Kinematics;
@@ -201,6 +199,10 @@ fn wrong_numbers_of_things_are_refused_at_their_key_with_the_accepted_range() {
         ("[[wall]]\ncarries = [\"back\"]\n", "is said 0 times"),
         ("[seat]\nheight_m = 0.4\nbackrest_deg = 100\n", "no backrest"),
         ("[seat]\nheight_m = 0.43\narmrests_m = 0.6\n", "the arms of this body reach armrests of"),
+        (
+            "[seat]\nheight_m = 0.45\nbackrest = true\n[[table]]\nheight_m = 0.72\nedge_m = 0.25\ncarries = [\"right_forearm\", \"left_forearm\"]\n",
+            "no start was found in which all parts rest on their things: bring the things nearer",
+        ),
         ("[[step]]\nheight_m = 0.2\nunder = \"right_hand\"\n", "unknown value `right_hand`"),
         ("[floor]\nfeet = \"both\"\n[[step]]\nheight_m = 0.2\nunder = \"left_foot\"\n", "is a support already"),
     ];

@@ -1,7 +1,5 @@
 //! Compares lines over single surfaces with OpenSim's (`scripts/opensim_wraps.py`).
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Placement, adult};
 use contrapposto::muscle::{

@@ -5,26 +5,15 @@
 //! `write/motion.rs`: a body in motion, read back by the readers of `write/players.rs`. `write/skin.rs`: the adult's skin;
 //! `write/skinned.rs`: its glTF.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and print like tests")]
-
-mod common;
-#[path = "write/imported.rs"]
+use crate::common;
 mod imported;
-#[path = "write/laws.rs"]
 mod laws;
-#[path = "write/motion.rs"]
 mod motion;
-#[path = "write/muscles.rs"]
 mod muscles;
-#[path = "write/peers.rs"]
 mod peers;
-#[path = "write/players.rs"]
 mod players;
-#[path = "write/skin.rs"]
 mod skin;
-#[path = "write/skinned.rs"]
 mod skinned;
-#[path = "write/tubes.rs"]
 mod tubes;
 
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
 //! Tests the XML tree: accepted texts, the place of every refusal, and that no bytes end the process.
 
-mod common;
+use crate::common;
 
 use common::{assert_linear, hammer, shared};
 use contrapposto_formats::xml::{Limits, Position, XmlError, parse};

@@ -31,7 +31,7 @@ mod _native {
     #[pymodule_export]
     use super::model::Model;
     #[pymodule_export]
-    use super::program::run_program;
+    use super::program::{examples, run_program};
     #[pymodule_export]
     use super::sweep::{Sweep, SweepFolder, population};
 

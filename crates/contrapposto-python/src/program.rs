@@ -1,4 +1,4 @@
-//! Runs the program `contrapposto` inside Python.
+//! Runs the program `contrapposto` inside Python, and gives the scenarios that it carries.
 
 use std::ffi::OsString;
 
@@ -10,4 +10,10 @@ use crate::unlocked::in_background;
 #[pyfunction]
 pub(crate) fn run_program(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
     in_background(py, move |_| contrapposto_cli::run(words))
+}
+
+/// Name and text of each scenario of the repository that needs no other file.
+#[pyfunction]
+pub(crate) fn examples() -> Vec<(&'static str, &'static str)> {
+    contrapposto_cli::library::EXAMPLES.to_vec()
 }

@@ -1,6 +1,6 @@
 //! Computes the torques of many postures in blocks, between which Ctrl-C is seen.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use contrapposto::joint_torques::{JointMuscles, JointTorquesError};
 use contrapposto::statics::Load;
@@ -11,8 +11,10 @@ use pyo3::prelude::*;
 use crate::errors::refused_row;
 use crate::loads::Loading;
 
-/// Postures of one thread between two looks for Ctrl-C.
-const BLOCK: usize = 2048;
+/// Postures of a part: threads take parts in turn, so a thread that is held up leaves its share to the others.
+const PART: usize = 128;
+/// Parts of one thread between two looks for Ctrl-C.
+const PARTS_OF_ROUND: usize = 16;
 
 /// A body with its muscles, where they are used.
 pub(crate) struct Body {
@@ -46,10 +48,9 @@ impl Given {
     pub(crate) fn torques(&self, py: Python<'_>, body: &Body, rates: usize) -> PyResult<Torques> {
         let mut all = [(); 3].map(|()| vec![0.0; self.postures() * rates]);
         let [external, passive, active] = &mut all;
-        let size = (BLOCK * rates).max(1);
+        let size = (PART * rates).max(1);
         let parts = external.chunks_mut(size).zip(passive.chunks_mut(size)).zip(active.chunks_mut(size));
-        let parts =
-            parts.enumerate().map(|(i, ((external, passive), active))| (i * BLOCK, [external, passive, active]));
+        let parts = parts.enumerate().map(|(i, ((external, passive), active))| (i * PART, [external, passive, active]));
         self.in_blocks(py, body, parts, |rest, loads, row, [external, passive, active], at| {
             let here = at * rates..(at + 1) * rates;
             let out = [&mut external[here.clone()], &mut passive[here.clone()], &mut active[here]];
@@ -63,7 +64,7 @@ impl Given {
     pub(crate) fn gradients(&self, py: Python<'_>, body: &Body, rates: usize) -> PyResult<Vec<f64>> {
         let square = rates * rates;
         let mut all = vec![0.0; self.postures() * square];
-        let parts = all.chunks_mut((BLOCK * square).max(1)).enumerate().map(|(i, part)| (i * BLOCK, part));
+        let parts = all.chunks_mut((PART * square).max(1)).enumerate().map(|(i, part)| (i * PART, part));
         self.in_blocks(py, body, parts, |rest, loads, row, part, at| {
             rest.gradient(&body.opened.model, self.row(row), loads, &mut part[at * square..(at + 1) * square])
         })?;
@@ -74,7 +75,7 @@ impl Given {
         &self.values[row * self.width..(row + 1) * self.width]
     }
 
-    /// Fills parts of at most [`BLOCK`] postures, several at once, without the lock; `fill` computes one posture, given its number and
+    /// Fills parts of at most [`PART`] postures, several at once, without the lock; `fill` computes one posture, given its number and
     /// its place in its part.
     fn in_blocks<P: Send>(
         &self,
@@ -87,7 +88,7 @@ impl Given {
             (0..self.threads.max(1)).map(|_| RestTorques::new(&body.opened, body.muscles.as_ref())).collect();
         let part_of = |rest: &mut RestTorques, (first, mut part): (usize, P)| -> Result<(), Refused> {
             let mut loads = vec![];
-            for (at, row) in (first..self.postures().min(first + BLOCK)).enumerate() {
+            for (at, row) in (first..self.postures().min(first + PART)).enumerate() {
                 loads.clear();
                 loads.extend(self.loads.iter().map(|load| load.at(row)));
                 fill(rest, &loads, row, &mut part, at).map_err(|error| (row, error))?;
@@ -95,7 +96,7 @@ impl Given {
             Ok(())
         };
         loop {
-            let round: Vec<(usize, P)> = parts.by_ref().take(bodies.len()).collect();
+            let round: Vec<(usize, P)> = parts.by_ref().take(bodies.len() * PARTS_OF_ROUND).collect();
             if round.is_empty() {
                 return Ok(());
             }
@@ -106,21 +107,29 @@ impl Given {
     }
 }
 
-/// Computes the parts, each in a thread of its own but the first; the error of the first part counts.
+/// Computes the parts, in as many threads as there are bodies; the error of the first row counts.
 fn at_once<P: Send>(
     bodies: &mut [RestTorques],
     parts: Vec<(usize, P)>,
     part_of: &(impl Fn(&mut RestTorques, (usize, P)) -> Result<(), Refused> + Sync),
 ) -> Result<(), Refused> {
-    let mut jobs = bodies.iter_mut().zip(parts);
-    let Some((body, part)) = jobs.next() else { return Ok(()) };
+    let Some((first, others)) = bodies.split_first_mut() else { return Ok(()) };
+    let most = others.len().min(parts.len().saturating_sub(1));
+    let others = &mut others[..most];
+    let parts = Mutex::new(parts.into_iter());
+    // Parts are taken in their order, and each that was taken is ended: the first refused row is always found.
+    let work = |body: &mut RestTorques| -> Result<(), Refused> {
+        loop {
+            let part = parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some(part) = part else { return Ok(()) };
+            part_of(body, part)?;
+        }
+    };
     std::thread::scope(|scope| {
-        let others: Vec<_> = jobs.map(|(body, part)| scope.spawn(move || part_of(body, part))).collect();
-        let first = part_of(body, part);
+        let others: Vec<_> = others.iter_mut().map(|body| scope.spawn(|| work(body))).collect();
+        let mut results = vec![work(first)];
         let panicked = |panic| std::panic::resume_unwind(panic);
-        others.into_iter().fold(first, |found, other| {
-            let result = other.join().unwrap_or_else(panicked);
-            found.and(result)
-        })
+        results.extend(others.into_iter().map(|other| other.join().unwrap_or_else(panicked)));
+        results.into_iter().filter_map(Result::err).min_by_key(|(row, _)| *row).map_or(Ok(()), Err)
     })
 }

@@ -3,6 +3,7 @@
 const BEFORE_BODY = 0.16, EDGES = 0.8, PALE = 0.5; // opacities; share of the colour of the scene
 const NEAR_TARGET = 0.005, FAR_TARGET = 1.2, FAR_ARROW = 0.6; // m
 const BONE = 0.2, THICKEST_BONE = 0.011, GLASS = 0.17; // share of a segment's thickness; m; opacity of the body about muscles
+const PULLS_DOWN = 0.7; // share of a force
 const ARROW_OF_WEIGHT = 0.6, SHORTEST_ARROW = 0.012, SHORTEST_LOAD = 0.25, ARROW_HEAD = 0.09, LEAST_DRAG = 4; // m; px
 
 // Largest sum of contact forces in any frame, N; of a body without supports, of loads.
@@ -22,6 +23,7 @@ class Body {
   constructor(canvas, gl, { onTurn, onPick, onMuscle }) {
     [this.canvas, this.gl, this.onTurn, this.onPick, this.onMuscle] = [canvas, gl, onTurn, onPick, onMuscle];
     this.painter = new Painter(gl);
+    VIEWS.between = startView(report.open);
     this.camera = new Camera(sceneBounds());
     this.weight = largestWeight() || 1;
     this.makeMeshes();
@@ -152,7 +154,8 @@ class Body {
   }
 
   drawThings(frame, color, alpha) {
-    for (const { places, size } of report.things) {
+    for (const { places, size, putDown } of report.things) {
+      if (putDown !== null && frame >= putDown) continue;
       const place = stretched(placement(places, frame), size);
       this.painter.list(this.boxFaces, color, alpha, place);
       if (alpha < 1) this.painter.list(this.boxEdges, color, EDGES, place);
@@ -194,7 +197,7 @@ class Body {
     const dot = (point, size, height, color) => this.painter.hull(this.ball, scaledAt(point, size, height), color, alpha);
     for (const support of report.supports) this.drawForce(at(support.at), at(support.force), "--force", alpha);
     // Nothing hides a load.
-    for (const load of report.loads) this.drawForce(at(load.at), at(load.force), "--load", 1, SHORTEST_LOAD);
+    for (const load of report.loads) this.drawForce(at(load.at), at(load.force), "--load", 1, SHORTEST_LOAD, true);
     if (report.center) {
       const [x, y, z] = at(report.center), color = styleColor("--center"), ground = report.ground;
       dot([x, y, z], 0.03, 0.03, color);
@@ -220,12 +223,14 @@ class Body {
     if (far) this.painter.hull(this.tip, pointing(tip, way, 1, 1), color, alpha);
   }
 
-  // An arrow in proportion to the force, but not shorter than `shortest`; none of a force of next to nothing.
-  drawForce(foot, force, colorName, alpha, shortest = 0) {
+  // An arrow in proportion to the force on the body, but not shorter than `shortest`; none of a force of next to nothing. A load that pulls
+  // down hangs at its point; `presses`: any other one ends there, as a hand that presses on the body.
+  drawForce(point, force, colorName, alpha, shortest = 0, presses = false) {
     const wanted = Math.hypot(...force) * ARROW_OF_WEIGHT / this.weight, length = Math.max(wanted, shortest);
     if (wanted < SHORTEST_ARROW) return;
     const arrow = unit(force).map((v) => v * length);
-    const color = styleColor(colorName), tip = foot.map((v, k) => v + arrow[k]);
+    const hangs = !presses || -force[1] > PULLS_DOWN * Math.hypot(...force);
+    const color = styleColor(colorName), foot = hangs ? point : point.map((v, k) => v - arrow[k]), tip = foot.map((v, k) => v + arrow[k]);
     this.painter.hull(this.shaft, pointing(foot, arrow, 1, Math.max(0.001, length - ARROW_HEAD)), color, alpha);
     this.painter.hull(this.tip, pointing(tip, arrow, 1, 1), color, alpha);
   }

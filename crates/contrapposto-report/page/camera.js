@@ -2,6 +2,8 @@
 const FIELD_OF_VIEW = 0.45, FARTHEST_THING = 0.5; // rad; m
 // Yaw and pitch of the camera, rad: yaw 0 is from the front, a quarter turn from the body's right.
 const VIEWS = { front: [0, 0.06], side: [Math.PI / 2, 0.06], between: [0.45, 0.14] };
+// Yaw that shows the side of a joint in hazard, and the back of one in the middle of the body, rad.
+const BESIDE = 1.1, BEHIND = 2.1, OFF_MIDDLE = 0.05; // the last one m
 const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 // Place of a segment in a frame; `places` holds x, y, z and the quaternion w, x, y, z, each over all frames.
@@ -28,6 +30,20 @@ function scaledAt(point, size, height) {
 // A matrix that first scales along its own axes.
 function stretched(matrix, size) {
   return matrix.map((v, i) => i < 12 ? v * (size[i >> 2]) : v);
+}
+
+// Yaw and pitch from which the joint that the answer is about faces the camera: a joint in hazard in the frame from its own side, one of the
+// back from behind; else the joint that is shown first from its own side.
+function startView(frame) {
+  const joint = report.joints.findIndex((joint) => joint.hazard && joint.hazard[frame] > 0);
+  const segment = report.segments.find((segment) => segment.joints.includes(joint < 0 ? report.main : joint));
+  if (!segment) return VIEWS.between;
+  const label = report.joints[joint < 0 ? report.main : joint].label, middles = report.segments.map(({ places }) => places[2][frame]);
+  const across = segment.places[2][frame] - (Math.min(...middles) + Math.max(...middles)) / 2;
+  const named = /^left(?![a-z])/.test(label) ? -1 : /^right(?![a-z])/.test(label) ? 1 : 0;
+  const side = named || (Math.abs(across) > OFF_MIDDLE ? Math.sign(across) : 0), [yaw, pitch] = VIEWS.between;
+  if (joint < 0) return [(side || 1) * yaw, pitch];
+  return [side ? side * BESIDE : BEHIND, pitch];
 }
 
 // Bounds of the segments in some frames and at the start, of the surfaces, the targets and the things: of the last two at most

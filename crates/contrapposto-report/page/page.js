@@ -1,7 +1,7 @@
 // Ties the page together: one frame, one joint, one measure; everything shown follows from these three.
 const HARDEST_GROUPS = 8, MOST_PRESSED = 7, LONGEST_PLAY = 12, MOST_LOADS = 3; // rows; rows; s; named in the key
-const MOST_REASONS = 2, MOST_ENTRIES = 6; // shown before the rest is folded
 const NARROW = matchMedia("(max-width: 52rem)"), TOUCHED = matchMedia("(pointer: coarse)").matches;
+const MOST_REASONS = NARROW.matches ? 1 : 2, MOST_ENTRIES = NARROW.matches ? 3 : 6; // shown before the rest is folded
 const SMALLEST_BODY = 300, LARGEST_BODY = 680; // px
 const RESTING = 0.005, TIRED = (report.levels || [0, 0.3])[1]; // load; fatigue
 const LAST_FRAME = Math.max(0, report.frames - 1), TIMES = report.times || [], END = TIMES[LAST_FRAME] || 0;
@@ -38,7 +38,7 @@ function press(buttons, isPressed) {
 function inUnit(s, digits) {
   if (s < 9.95) return `${s.toFixed(digits + 1)}\u00a0s`;
   if (s < 100) return `${s.toFixed(digits)}\u00a0s`;
-  return s < 5970 ? `${(s / 60).toFixed(digits + 1)}\u00a0min` : `${(s / 3600).toFixed(2 * digits + 1)}\u00a0h`;
+  return s < 5970 ? `${(s / 60).toFixed(s < 597 ? digits + 1 : digits)}\u00a0min` : `${(s / 3600).toFixed(2 * digits + 1)}\u00a0h`;
 }
 // A moment has a digit more than a time.
 function clock(t) {
@@ -133,7 +133,7 @@ function hideUnknown() {
   for (const [id, isKnown] of Object.entries(known)) find(id).hidden = !isKnown;
   if (report.solid) fillLimits(report.solid);
   if (report.cycles) find("cycle-text").textContent = report.cycles.text;
-  find("things").textContent = [...new Set(report.things.map((thing) => thing.label))].join(", ");
+  find("things").textContent = [...new Set(report.things.map(({ label, putDown }) => label + (putDown === null ? "" : ` (until ${frameName(putDown)})`)))].join(", ");
   find("surfaces").textContent = [...new Set(report.surfaces.map((surface) => surface.label))].join(", ");
   const loads = report.loads.map((load) => load.label);
   find("loads").textContent = loads.length && loads.length <= MOST_LOADS ? `: ${loads.join(", ")}` : "";
@@ -330,7 +330,7 @@ class Page {
   // A group that is tired and could hold its load without limit recovers at rest; under the load it does not become more tired.
   whyTired(group, load, fatigue) {
     const easy = load < RESTING || group.left[this.frame] < 0;
-    return !easy || fatigue < TIRED ? "" : load < RESTING ? "; recovers" : "; gets no more tired";
+    return !easy || fatigue < TIRED ? "" : load < RESTING ? "; recovers" : "; tires no further";
   }
 
   // Groups with load or fatigue, the greatest load first.
@@ -418,7 +418,7 @@ class Page {
 
   // Makes the body as tall as the window has room for below the words, with slider and key.
   fitBody() {
-    const canvas = find("body"), below = find("legend").getBoundingClientRect().bottom - canvas.getBoundingClientRect().bottom;
+    const canvas = find("body"), below = find("keys").getBoundingClientRect().bottom - canvas.getBoundingClientRect().bottom;
     const top = canvas.getBoundingClientRect().top + scrollY;
     const room = NARROW.matches ? 0.5 * innerHeight : innerHeight - top - below - 10;
     canvas.style.height = `${Math.round(Math.min(LARGEST_BODY, Math.max(SMALLEST_BODY, room)))}px`;

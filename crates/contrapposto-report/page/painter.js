@@ -16,7 +16,8 @@ const FRAGMENT_SHADER = `
   varying vec3 facing, painted;
   void main() {
     vec3 n = normalize(facing);
-    float shade = 0.58 + 0.2 * n.y + 0.34 * max(dot(n, light), 0.0);
+    // A surface that faces the viewer has its own colour, as in the key; those turned away are darker, none is brighter.
+    float shade = min(1.0, 0.66 + 0.1 * n.y + 0.66 * max(dot(n, light), 0.0));
     shade *= 0.72 + 0.28 * smoothstep(0.0, 0.55, abs(dot(n, eye)));
     gl_FragColor = vec4(color.rgb * painted * mix(shade, 1.0, flatness), color.a);
   }`;

@@ -24,6 +24,14 @@ function bytesOf(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 }
 
+// Brightness of vertices: that of most of them, the bare skin, is 1, so that skin has the colours of the key; nothing is brighter.
+function brightness(light) {
+  const counts = new Uint32Array(256);
+  for (const v of light) counts[v]++;
+  const skin = counts.indexOf(counts.reduce((a, b) => Math.max(a, b), 0)) || 255;
+  return Float32Array.from(light, (v) => Math.min(1, v / skin));
+}
+
 class Skin {
   constructor({ low, step, vertices, triangles, bones, weights, light, segments, nodes }, painter) {
     [this.segments, this.nodes, this.painter] = [segments, nodes, painter];
@@ -32,7 +40,7 @@ class Skin {
     this.triangles = new Uint16Array(bytesOf(triangles).buffer);
     this.bones = bytesOf(bones);
     this.weights = Float32Array.from(bytesOf(weights), (v) => v / 255);
-    this.light = Float32Array.from(bytesOf(light), (v) => v / 255);
+    this.light = brightness(bytesOf(light));
     for (const segment of segments) if (segment.part !== null) Object.assign(segment, { places: report.segments[segment.part].places, start: report.segments[segment.part].start });
     this.mesh = painter.paintedMesh(this.triangles, this.light.length);
     this.ghost = painter.paintedMesh(this.triangles, this.light.length);

@@ -158,7 +158,12 @@ fn surface(surface: &Surface) -> Value {
 }
 
 fn thing(thing: &Thing, n: usize) -> Value {
-    json!({ "label": thing.label, "size": short(&thing.size, METRES), "places": places(&thing.places, n) })
+    json!({
+        "label": thing.label,
+        "size": short(&thing.size, METRES),
+        "places": places(&thing.places, n),
+        "putDown": thing.put_down,
+    })
 }
 
 fn target(target: &Target, n: usize) -> Value {

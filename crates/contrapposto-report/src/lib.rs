@@ -18,7 +18,7 @@ mod skin;
 pub use cycles::{Band, CycleCurves, Cycles};
 pub use document::{Document, Picture, write_document};
 pub use muscles::{Carrier, PressedJoint};
-pub use page::write;
+pub use page::{write, write_with};
 
 /// Everything a page shows. Ground axes: x forward, y up, z to the right; m, s, N, N m, degrees.
 #[derive(Clone, Debug, Default)]
@@ -284,6 +284,8 @@ pub struct Thing {
     pub size: [f64; 3],
     /// Placement of its middle in every frame: origin, m, and unit quaternion `w x y z`; one entry for a thing that stays.
     pub places: Vec<[f64; 7]>,
+    /// The frame from which on it is not there; `None` for a thing that is not put down.
+    pub put_down: Option<usize>,
 }
 
 /// A load over time: a held weight, a tool, a push at a handle.

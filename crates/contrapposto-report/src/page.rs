@@ -33,10 +33,15 @@ const PLOTLY: &str = include_str!("../vendor/plotly.js/plotly-basic.min.js");
 /// Inline style is allowed (`unsafe-inline`), because plotly.js sets style attributes; without a network it cannot send anything.
 /// Images may come from the page itself, because plotly.js makes one when a chart is saved.
 pub fn write(report: &Report) -> String {
+    write_with(report, PLOTLY)
+}
+
+/// The same with the text of plotly.js given, for a program that does not carry it.
+pub fn write_with(report: &Report, plotly: &str) -> String {
     let script = SCRIPTS.concat();
     let policy = format!(
         "default-src 'none'; script-src '{}' '{}'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'",
-        hash(PLOTLY),
+        hash(plotly),
         hash(&script)
     );
     let title = if report.title.is_empty() { "contrapposto" } else { &report.title };
@@ -47,10 +52,10 @@ pub fn write(report: &Report) -> String {
         "style" => STYLE,
         "data" => &data,
         "script" => &script,
-        "plotly" => PLOTLY,
+        "plotly" => plotly,
         _ => "",
     };
-    let mut page = String::with_capacity(PLOTLY.len() + data.len() + (1 << 18));
+    let mut page = String::with_capacity(plotly.len() + data.len() + (1 << 18));
     // Places are searched in our own text only, never in inserted text.
     let mut rest = PAGE;
     while let Some((before, (place, after))) = rest.split_once("{{").and_then(|(b, a)| Some((b, a.split_once("}}")?))) {

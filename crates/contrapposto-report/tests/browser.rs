@@ -7,8 +7,6 @@ mod support;
 
 use std::path::PathBuf;
 
-use base64::Engine;
-use base64::prelude::BASE64_STANDARD;
 use contrapposto_report::{
     Balance, Carrier, Entry, Fact, Figure, ForceSolid, Group, Joint, List, Moments, Muscle, Muscles, PathPoint,
     PressedJoint, Push, Report, Segment, Support, Surface, Table, Target, Thing, write,
@@ -258,16 +256,25 @@ fn a_seat_is_drawn() {
 #[test]
 #[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
 fn a_thing_and_a_load_change_the_picture_and_have_a_key() {
-    let mut report = report();
+    let seen = 20;
+    let mut report = Report { open: seen, ..report() };
     let mut page = open_page("bare.html", &report);
     let without = page.evaluate(PICTURE);
     assert_eq!(page.evaluate("document.getElementById('key-thing').hidden"), true);
     let place = [0.1, 0.3, 0.0, 1.0, 0.0, 0.0, 0.0];
-    report.things = vec![Thing { label: HOSTILE.to_owned(), size: [0.1; 3], places: vec![place] }];
+    report.things = vec![Thing { label: HOSTILE.to_owned(), size: [0.1; 3], places: vec![place], put_down: None }];
     page.open(&file("thing.html", &write(&report)));
     let with_thing = page.evaluate(PICTURE);
     assert_ne!(with_thing, without);
     assert_eq!(page.evaluate("document.getElementById('key-thing').textContent"), HOSTILE);
+    for (frame, there) in [(seen + 1, true), (seen, false)] {
+        report.things[0].put_down = Some(frame);
+        page.open(&file("put-down.html", &write(&report)));
+        assert_eq!(page.evaluate(PICTURE) == with_thing, there, "put down from frame {frame} on, seen at frame {seen}");
+        let key = page.evaluate("document.getElementById('key-thing').textContent");
+        assert!(key.as_str().unwrap().starts_with(&format!("{HOSTILE} (until ")), "{key}");
+    }
+    report.things[0].put_down = None;
     let [at, force] = [vec![[0.1, 0.3, 0.0]; 50], vec![[0.0, -60.0, 0.0]; 50]];
     report.loads = vec![Push { label: HOSTILE.to_owned(), at, force }];
     page.open(&file("load.html", &write(&report)));
@@ -408,7 +415,8 @@ fn words_body_slider_and_key_are_above_the_fold_at_1400_by_900() {
         "Emulation.setDeviceMetricsOverride",
         json!({ "width": 1400, "height": 900, "deviceScaleFactor": 1, "mobile": false }),
     );
-    page.wait_for("document.getElementById('legend').getBoundingClientRect().bottom <= 900");
+    page.open(&file("fold.html", &write(&report)));
+    page.wait_for("document.getElementById('keys').getBoundingClientRect().bottom <= 900");
     let tall = "document.getElementById('body').getBoundingClientRect().height";
     assert!(page.evaluate(tall).as_f64().unwrap() >= 300.0);
     assert_eq!(page.evaluate("document.getElementById('slider').getBoundingClientRect().bottom <= 900"), true);
@@ -443,22 +451,13 @@ fn a_long_report_is_five_screens_of_a_phone_and_two_pages_of_paper() {
     report.table.heading = "Table".to_owned();
     report.table.rows = vec![vec!["a cell".to_owned(); 6]; 10];
     let mut page = open_page("long.html", &report);
-    let paper = json!({ "printBackground": true, "preferCSSPageSize": true });
-    let pdf = page.call("Page.printToPDF", paper);
-    assert_eq!(pages(pdf["data"].as_str().unwrap()), 2);
+    assert_eq!(page.sheets(), 2);
     let phone = json!({ "width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": true });
     page.call("Emulation.setDeviceMetricsOverride", phone);
     page.open(&file("long.html", &write(&report)));
     let height = page.evaluate("document.documentElement.scrollHeight").as_f64().unwrap();
     assert!(height <= 5.0 * 844.0, "{height} px");
     assert_eq!(page.complaints(), Vec::<String>::new());
-}
-
-/// Number of pages of a PDF in Base64.
-fn pages(pdf: &str) -> usize {
-    let bytes = BASE64_STANDARD.decode(pdf).unwrap();
-    let text = String::from_utf8_lossy(&bytes);
-    text.matches("/Type /Page\n").count() + text.matches("/Type /Page /").count()
 }
 
 #[test]
@@ -501,6 +500,64 @@ fn a_joint_in_hazard_changes_the_picture_and_has_a_key() {
     assert_ne!(page.evaluate(PICTURE), without);
     assert_eq!(page.evaluate("document.getElementById('key-hazard').hidden"), false);
     assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+/// Pixels of the picture within 3 % of a colour, whose script gives red, green and blue from 0 to 1.
+fn pixels_like(color: &str) -> String {
+    format!(
+        "(() => {{ const c = document.getElementById('body'), gl = c.getContext('webgl'), p = new Uint8Array(4 * c.width * c.height);
+  gl.readPixels(0, 0, c.width, c.height, gl.RGBA, gl.UNSIGNED_BYTE, p);
+  const wanted = {color}.map((v) => 255 * v);
+  let count = 0;
+  for (let i = 0; i < p.length; i += 4) if (wanted.every((v, k) => Math.abs(p[i + k] - v) <= 8)) count++;
+  return count; }})()"
+    )
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn a_lit_part_that_faces_the_viewer_has_the_colour_of_the_key() {
+    let mut report = report();
+    report.joints.iter_mut().for_each(|joint| joint.load.iter_mut().for_each(|load| *load = 0.3));
+    let mut page = open_page("lit.html", &report);
+    let like = page.evaluate(&pixels_like("colorOf(measures.load, 0.3)")).as_u64().unwrap();
+    let body = "(() => { const r = document.getElementById('body'); return r.width * r.height; })()";
+    let share = like as f64 / page.evaluate(body).as_f64().unwrap();
+    println!("{like} pixels of the body, {:.2} % of the picture", 100.0 * share);
+    assert!(share > 0.01, "{share}");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn the_first_view_is_from_the_side_of_the_joint_in_hazard_or_of_the_answer() {
+    let mut report = report();
+    let beside = |z: f64, joint: usize| {
+        let places = [[0.0, 1.0, z, 1.0, 0.0, 0.0, 0.0]; 50].to_vec();
+        let balls = vec![[0.0, 0.0, 0.0, 0.06]];
+        Segment { balls, joints: vec![joint], start: places[0], places, ..Segment::default() }
+    };
+    report.segments = vec![beside(-0.2, 0), beside(0.2, 1), beside(0.0, 2)];
+    report.joints.push(report.joints[1].clone());
+    let mut page = open_page("left.html", &report);
+    let mut yaw = |report: &Report| {
+        page.open(&file("view.html", &write(report)));
+        page.evaluate("VIEWS.between[0]").as_f64().unwrap()
+    };
+    let [left, right] = [0, 1].map(|main| {
+        report.main = main;
+        yaw(&report)
+    });
+    assert!(left < -0.2 && right > 0.2, "the joint of the answer: {left} {right}");
+    report.joints[1].label = "left knee".to_owned();
+    assert!(yaw(&report) < -0.2, "a left leg may stand to the right of the other one");
+    report.joints[1].label = "knee".to_owned();
+    for (joint, expected) in [(0, -0.9..-1.3), (1, 1.3..0.9), (2, 2.4..1.7)] {
+        report.joints.iter_mut().for_each(|joint| joint.hazard = vec![]);
+        report.joints[joint].hazard = vec![true; 50];
+        let from = yaw(&report);
+        assert!(from < expected.start && from > expected.end, "joint {joint} in hazard: seen from {from}");
+    }
 }
 
 #[test]

@@ -81,3 +81,26 @@ fn bones_turn_by_their_shares_and_the_wooden_figure_is_a_choice() {
     assert_eq!(page.evaluate("document.getElementById('figure').hidden"), true);
     assert_eq!(page.complaints(), Vec::<String>::new());
 }
+
+/// Skin is not white, and its brightness does not change the colour that the key explains; cloth, of which there is less, is darker.
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn bare_skin_that_faces_the_viewer_has_the_colour_of_the_key() {
+    let mut report = report();
+    let skin = report.skin.as_mut().unwrap();
+    skin.triangles = vec![[0, 1, 3], [1, 2, 3]];
+    skin.light = vec![186, 186, 186, 150];
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("lit-skin.html");
+    std::fs::write(&path, write(&report)).unwrap();
+    let mut page = Chromium::start();
+    page.open(&path);
+    let count = "(() => { document.querySelector('[data-view=side]').click();
+      const c = document.getElementById('body'), gl = c.getContext('webgl'), p = new Uint8Array(4 * c.width * c.height);
+      gl.readPixels(0, 0, c.width, c.height, gl.RGBA, gl.UNSIGNED_BYTE, p);
+      const wanted = styleColor('--none').map((v) => 255 * v);
+      let count = 0;
+      for (let i = 0; i < p.length; i += 4) if (wanted.every((v, k) => Math.abs(p[i + k] - v) <= 8)) count++;
+      return count; })()";
+    assert!(page.evaluate(count).as_u64().unwrap() > 100, "no pixel of the skin is within 3 % of its colour");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}

@@ -1,6 +1,6 @@
 //! Computes the interval of a share that was counted in a sample.
 
-use super::normal::quantile;
+use contrapposto::math::normal::quantile;
 
 /// Share of all samples whose interval holds the true share.
 pub const CONFIDENCE: f64 = 0.95;

@@ -4,7 +4,6 @@
 //! A row depends on the plan, the scenario and its own number alone, so any thread or machine can compute any part, with the same bytes.
 
 mod interval;
-mod normal;
 mod outcome;
 mod part;
 mod part_file;
@@ -19,10 +18,9 @@ mod table;
 mod thrift;
 
 pub use interval::{CONFIDENCE, wilson};
-pub use normal::{cumulative, quantile};
 pub use outcome::Outcome;
 pub use part::Study;
-pub use population::{MOST_BODIES, People, Population, QUANTILES, SEXES, population, size_at};
+pub use population::{MOST_BODIES, People, Population, QUANTILES, SEXES, population};
 pub use rank_regression::{RankCoefficient, RankRegression, ranks};
 pub use sampler::Sampler;
 pub use sensitivity::{LEAST_FOR_SENSITIVITY, NoSensitivity, PARAMETERS, Sensitivity};

@@ -7,7 +7,6 @@ use contrapposto::verdict::VerdictKind;
 use contrapposto_formats::{Design, Distribution, Parameter, Plan, STRENGTH_DEVIATIONS, Value};
 
 use super::interval::wilson;
-use super::normal::quantile;
 use super::outcome::{Outcome, REFUSED};
 use super::part::Study;
 use super::sensitivity::{Body, NoSensitivity, PARAMETERS, Sensitivity};
@@ -38,13 +37,6 @@ pub fn population(base: &str, bodies: usize, seed: u32) -> [Plan; 2] {
             mixing: Some(mixing(people.correlation)),
         }
     })
-}
-
-/// Stature (m) and mass (kg) that a `share` of the people of a sex do not exceed, each alone.
-pub fn size_at(sex: Sex, share: f64) -> (f64, f64) {
-    let people = library().people().of_sex(sex);
-    let (score, stature, mass) = (quantile(share), people.stature_m, people.mass_kg);
-    (stature.mean + score * stature.deviation, mass.median * (score * mass.deviation_of_logarithm).exp())
 }
 
 fn parameters(sex: Sex, people: &PeopleOfSex) -> Vec<Parameter> {

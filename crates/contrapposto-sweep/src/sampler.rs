@@ -3,9 +3,9 @@
 //! A design gives every row a point of the unit cube. Correlated parameters have normal scores `z = quantile(u)`, mixed by the
 //! Cholesky factor of their correlation (a Gaussian copula), and their points are those of the mixed scores.
 
+use contrapposto::math::normal::{cumulative, quantile};
 use contrapposto_formats::{Design, Distribution, Parameter, Plan, Value};
 
-use super::normal::{cumulative, quantile};
 use super::random::{permutation, uniform};
 use super::sobol::{shifted_sobol, sobol};
 

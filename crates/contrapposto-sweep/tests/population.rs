@@ -5,10 +5,11 @@
 
 use std::f64::consts::PI;
 
+use contrapposto::math::normal::{cumulative, quantile};
 use contrapposto_formats::{Parameter, Value};
 use contrapposto_sweep::{
     Answer, MOST_DIMENSIONS, NoSensitivity, Outcome, PARAMETERS, Population, RankRegression, SEXES, Sampler, Study,
-    cumulative, population, quantile, ranks, sobol, wilson,
+    population, ranks, sobol, wilson,
 };
 
 const BASE: &str = "format = 1\n[coordinates]\nfree = [\"elbow_flex_r\"]\n\

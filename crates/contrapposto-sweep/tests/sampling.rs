@@ -2,8 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
+use contrapposto::math::normal::{cumulative, quantile};
 use contrapposto_formats::{Plan, Value, read_plan};
-use contrapposto_sweep::{MOST_DIMENSIONS, Sampler, cumulative, quantile, sobol};
+use contrapposto_sweep::{MOST_DIMENSIONS, Sampler, sobol};
 
 /// Written by `scripts/sobol_reference.py`.
 const SCIPY: &str = include_str!("scipy.csv");

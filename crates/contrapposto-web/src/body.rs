@@ -3,22 +3,31 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use contrapposto::contact::{Place, Region, Support};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model, plain_group_name, plain_name};
 use contrapposto::posture::Posture;
 use contrapposto::statics::LoadKind;
 use contrapposto::tasks::Task;
-use contrapposto_formats::animation::{Skeleton, joined_by, solids};
+use contrapposto_formats::animation::{Skeleton, directions, joined_by, solids};
 use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
 use contrapposto_formats::{ModelFile, RelaxScenario, RunScenario, Thing, read_relax, read_run, scenario_model};
 use nalgebra::{Isometry3, Vector3};
 
+use crate::HAS_ALL;
 use crate::document::Document;
 use crate::error::Refusal;
 use crate::message::{CoordinateScene, Handle, Hung, SegmentScene, ThingScene};
 
 /// Name of the document in messages.
 const NAME: &str = "scenario.toml";
+/// Upward part of the normal of a level plane, at least.
+const LEVEL: f64 = 0.999;
+/// Supports stand on one ground where their heights differ by less, m.
+const GROUND: f64 = 0.005;
+/// Least distance between the edges of two feet, m, and farthest one ahead, behind and aside (assumed).
+const GAP: f64 = 0.02;
+const FARTHEST: f64 = 1.5;
 /// Points of the built-in adult that have a handle: label, segment, and whether the point is the joint or the centre of mass.
 const HANDLES: [(&str, &str, At); 11] = [
     ("right hand", "hand_r", At::Mass),
@@ -72,6 +81,59 @@ impl Body {
             let names: Vec<&str> = self.model.segments().iter().map(|segment| segment.name.as_str()).collect();
             Refusal(format!("there is no segment `{name}`; there are: {}", names.join(", ")))
         })
+    }
+
+    /// The support on a segment.
+    pub(crate) fn support_on(&self, segment: usize) -> Option<usize> {
+        self.scenario.supports.iter().position(|support| support.segment == segment)
+    }
+
+    /// Whether a support can be put elsewhere: it lies level, and no other one is lower, so that the ground goes on around it.
+    pub(crate) fn is_on_ground(&self, support: usize) -> Result<bool, Refusal> {
+        let kinematics = self.kinematics(&self.scenario.start)?;
+        let height = |support: &Support| {
+            let corners = support.corners.iter();
+            corners
+                .map(|corner| kinematics.station(&self.model, support.segment, *corner).y)
+                .fold(f64::INFINITY, f64::min)
+        };
+        let lowest = self.scenario.supports.iter().map(height).fold(f64::INFINITY, f64::min);
+        let own = &self.scenario.supports[support];
+        Ok(own.normal.y > LEVEL && height(own) - lowest < GROUND)
+    }
+
+    /// Lets a support shift on its plane, on its own side of the other foot.
+    pub(crate) fn let_slide(&mut self, support: usize) -> Result<(), Refusal> {
+        let kinematics = self.kinematics(&self.scenario.start)?;
+        let [right, ahead, _] = directions(&self.model);
+        let corners = |i: usize| {
+            let support = &self.scenario.supports[i];
+            let corners = support.corners.iter();
+            corners.map(|corner| kinematics.station(&self.model, support.segment, *corner)).collect::<Vec<_>>()
+        };
+        let middle = |corners: &[Vector3<f64>]| corners.iter().sum::<Vector3<f64>>() / corners.len() as f64;
+        let half = |corners: &[Vector3<f64>]| {
+            let far = |corner: &Vector3<f64>| (corner - middle(corners)).dot(&right).abs();
+            corners.iter().map(far).fold(0.0, f64::max)
+        };
+        let mut others = vec![];
+        for other in (0..self.scenario.supports.len()).filter(|&other| other != support) {
+            if self.is_on_ground(other)? {
+                others.push(corners(other));
+            }
+        }
+        let own = corners(support);
+        let away = |other: &Vec<Vector3<f64>>| (middle(&own) - middle(other)).dot(&right);
+        let nearest = others.iter().min_by(|a, b| away(a).abs().total_cmp(&away(b).abs()));
+        let region = nearest.map_or(vec![], |other| {
+            let now = away(other);
+            let side = right * now.signum();
+            let least = now.abs().min(half(&own) + half(other) + GAP);
+            let place = |aside: f64, forward: f64| middle(other) + side * aside + ahead * forward;
+            vec![place(least, -FARTHEST), place(least, FARTHEST), place(FARTHEST, FARTHEST), place(FARTHEST, -FARTHEST)]
+        });
+        self.scenario.supports[support].place = Place::Free(Region { corners: region, turn: (0.0, 0.0) });
+        Ok(())
     }
 
     /// The thing of the scenario that a segment holds.
@@ -174,6 +236,11 @@ impl Body {
     }
 }
 
+/// Whether a scenario names a model file.
+pub(crate) fn has_model_file(text: &str) -> Result<bool, Refusal> {
+    Ok(scenario_model(NAME, text.as_bytes())?.is_some())
+}
+
 /// Whether a text is a scenario: an error names the lines of the text, not those of the document that it becomes.
 pub(crate) fn check(text: &str, files: &BTreeMap<String, String>) -> Result<(), Refusal> {
     let model = model_file(files, text)?;
@@ -196,6 +263,9 @@ pub(crate) fn place(placement: &Isometry3<f64>) -> [f64; 7] {
 /// The model of the file that a scenario names, read as the program reads it; `None` for the built-in adult.
 fn model_file(files: &BTreeMap<String, String>, text: &str) -> Result<Option<Model>, Refusal> {
     let Some(file) = scenario_model(NAME, text.as_bytes())? else { return Ok(None) };
+    if !HAS_ALL {
+        return Err(Refusal::of("this module reads no model files"));
+    }
     let ModelFile { file: name, overlay, root, strength, fatigue, person, muscles, .. } = &file;
     if muscles.is_some_and(|uses| uses != MuscleUse::Off) {
         let why = "the page uses no muscles of model files; write muscles = \"off\", or use the program";

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use contrapposto::hybrid::Strategy;
+use contrapposto::model::Model;
 use contrapposto::toml_value::typed;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,8 @@ use toml::{Table, Value};
 
 use crate::error::Refusal;
 use crate::events;
-use crate::message::{Handle, ThingTable};
+use crate::message::{Handle, RegionScene, ThingTable};
+use crate::strategies;
 use crate::things;
 
 /// The scenario of a new page.
@@ -157,23 +159,43 @@ impl Document {
 
     /// Hangs a weight, kg, on a segment in place of the one that hangs there; 0 takes it off.
     pub(crate) fn set_load(&mut self, segment: &str, mass: f64) -> Result<(), Refusal> {
+        let weight = (mass != 0.0).then(|| vec![("mass_kg", Value::Float(mass))]);
+        self.replace_load(segment, &["mass_kg"], weight)
+    }
+
+    /// Pushes on a point of a segment, m, with a force in ground, N, in place of the one that pushes there; no force takes it off.
+    pub(crate) fn set_force(&mut self, segment: &str, point: [f64; 3], force: [f64; 3]) -> Result<(), Refusal> {
+        let pushes = force != [0.0; 3];
+        let keys = pushes.then(|| vec![("at_m", numbers(point)), ("force_n", numbers(force))]);
+        self.replace_load(segment, &["at_m", "force_n"], keys)
+    }
+
+    /// Puts a load on a segment in place of those that have these keys and no others beside the segment.
+    fn replace_load(&mut self, segment: &str, keys: &[&str], load: Option<Vec<(&str, Value)>>) -> Result<(), Refusal> {
         let loads = self.table.entry("load").or_insert_with(|| Value::Array(vec![]));
         let Value::Array(loads) = loads else { return Err(Refusal::of("[[load]] is no list of tables")) };
-        let hangs = |load: &Value| {
-            load.as_table().is_some_and(|load| {
-                load.len() == 2 && load.contains_key("mass_kg") && load["segment"].as_str() == Some(segment)
-            })
-        };
-        loads.retain(|load| !hangs(load));
-        if mass != 0.0 {
-            let load =
-                [("segment".to_owned(), Value::String(segment.to_owned())), ("mass_kg".to_owned(), Value::Float(mass))];
-            loads.push(Value::Table(load.into_iter().collect()));
+        loads.retain(|load| !has_keys(load, segment, keys));
+        if let Some(load) = load {
+            let segment = [("segment", Value::String(segment.to_owned()))];
+            let table = segment.into_iter().chain(load).map(|(key, value)| (key.to_owned(), value));
+            loads.push(Value::Table(table.collect()));
         }
         if loads.is_empty() {
             self.table.remove("load");
         }
         Ok(())
+    }
+
+    /// Forces that push on segments: segment, point and force.
+    pub(crate) fn forces(&self) -> Vec<(String, [f64; 3], [f64; 3])> {
+        let loads = self.table.get("load").and_then(Value::as_array).into_iter().flatten();
+        let force = |load: &Value| {
+            let segment = load.get("segment")?.as_str()?;
+            let keys = has_keys(load, segment, &["at_m", "force_n"]);
+            keys.then(|| Some((segment.to_owned(), vector(load.get("at_m")?)?, vector(load.get("force_n")?)?)))
+                .flatten()
+        };
+        loads.filter_map(force).collect()
     }
 
     /// Things that its tables put there.
@@ -200,12 +222,14 @@ impl Document {
         self.posture.clear();
     }
 
-    /// Strategy of the whole body. Other strategies of regions go.
-    pub(crate) fn set_strategy(&mut self, kind: &str) {
-        if let Some(Value::Table(strategy)) = self.table.get_mut("strategy") {
-            strategy.insert("kind".to_owned(), Value::String(kind.to_owned()));
-            strategy.remove("of");
-        }
+    /// Strategy of a region, or of the whole body.
+    pub(crate) fn set_strategy(&mut self, kind: &str, region: Option<&str>) -> Result<(), Refusal> {
+        strategies::set(&mut self.table, kind, region)
+    }
+
+    /// Strategies of the regions that a body has.
+    pub(crate) fn regions(&self, model: &Model) -> Vec<RegionScene> {
+        strategies::by_region(&self.table, model)
     }
 
     /// Fatigue at the start, by coordinate of the positive and negative group, 0 to 1; of all others 0.
@@ -238,9 +262,28 @@ fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
     typed(table.get_ref()).map_err(Refusal::of)
 }
 
+/// Whether a load acts on a segment and has these keys and no others.
+fn has_keys(load: &Value, segment: &str, keys: &[&str]) -> bool {
+    load.as_table().is_some_and(|load| {
+        load.len() == keys.len() + 1
+            && keys.iter().all(|key| load.contains_key(*key))
+            && load.get("segment").and_then(Value::as_str) == Some(segment)
+    })
+}
+
+/// Three numbers of a file.
+pub(crate) fn numbers(numbers: [f64; 3]) -> Value {
+    Value::Array(numbers.map(Value::Float).to_vec())
+}
+
+/// Three numbers from a file.
+pub(crate) fn vector(value: &Value) -> Option<[f64; 3]> {
+    let number = |value: &Value| value.as_float().or(value.as_integer().map(|n| n as f64));
+    value.as_array()?.iter().map(number).collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
 /// The task that holds a point at a place in ground.
 fn point_task(handle: &Handle, place: [f64; 3]) -> Value {
-    let numbers = |numbers: [f64; 3]| Value::Array(numbers.map(Value::Float).to_vec());
     let task = [
         ("kind".to_owned(), Value::String("point".to_owned())),
         ("segment".to_owned(), Value::String(handle.segment.clone())),

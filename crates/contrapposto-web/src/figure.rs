@@ -1,13 +1,15 @@
 //! Holds a body in a posture, with the engine that moves it. A figure is built whole or not at all.
 
+use contrapposto::model::plain_name;
 use contrapposto::posture::Posture;
 use nalgebra::Vector3;
 
 use crate::body::Body;
 use crate::document::Document;
 use crate::error::Refusal;
-use crate::message::{Handle, Person, Scene, Shown};
+use crate::message::{Handle, Pushed, Scene, Shown};
 use crate::mover::{Moved, Mover};
+use crate::person;
 use crate::shown;
 
 /// A body in a posture.
@@ -27,12 +29,15 @@ impl Figure {
         Ok(Self { body, posture, mover })
     }
 
-    /// The body of a document at its start, whose last held point is dragged.
-    pub(crate) fn dragging(document: &Document) -> Result<Self, Refusal> {
-        let body = Body::read(document)?;
+    /// The body of a document at its start, whose last held point is dragged; `sliding`: on this support, which shifts on its plane.
+    pub(crate) fn dragging(document: &Document, sliding: Option<usize>) -> Result<Self, Refusal> {
+        let mut body = Body::read(document)?;
+        if let Some(support) = sliding {
+            body.let_slide(support)?;
+        }
         let posture = body.scenario.start.clone();
         let Some((handle, place)) = document.held.last() else { return Err(Refusal::of("no point is grabbed")) };
-        let mover = Mover::dragging(&body, &posture, handle, *place)?;
+        let mover = Mover::dragging(&body, &posture, (handle, *place), sliding.is_some())?;
         Ok(Self { body, posture, mover })
     }
 
@@ -73,7 +78,7 @@ impl Figure {
     }
 
     fn move_to(&mut self, posture: Posture, moved: Moved) -> Result<Shown, Refusal> {
-        let shown = shown::held(&self.body, &mut self.mover.engine, &posture, moved)?;
+        let shown = shown::held(&self.body, &mut self.mover.engine, &posture, false, moved)?;
         self.posture = posture;
         Ok(shown)
     }
@@ -81,12 +86,18 @@ impl Figure {
     /// Another posture, held still, with the same tasks.
     pub(crate) fn shown_in(&self, posture: &Posture) -> Result<Shown, Refusal> {
         let mut mover = Mover::settling(&self.body, &self.body.scenario.start)?;
-        shown::held(&self.body, &mut mover.engine, posture, Moved::default())
+        shown::held(&self.body, &mut mover.engine, posture, false, Moved::default())
+    }
+
+    /// A posture, held still, with the supports where it has them.
+    pub(crate) fn still_in(&self, posture: &Posture) -> Result<Shown, Refusal> {
+        let mut mover = Mover::settling(&self.body, posture)?;
+        shown::held(&self.body, &mut mover.engine, posture, true, Moved::default())
     }
 
     /// The posture, held still.
     pub(crate) fn shown(&mut self) -> Result<Shown, Refusal> {
-        shown::held(&self.body, &mut self.mover.engine, &self.posture, Moved::default())
+        shown::held(&self.body, &mut self.mover.engine, &self.posture, false, Moved::default())
     }
 
     /// Body and job of a document, `can`: whether there is a change to undo, and one to redo.
@@ -95,7 +106,9 @@ impl Figure {
         let body = &self.body;
         let scenario = &body.scenario;
         let support = |support: &contrapposto::contact::Support| body.model.segments()[support.segment].name.clone();
-        let person = document.adult().map(|(sex, stature, mass)| Person { sex, stature, mass });
+        let person = document.adult().and_then(person::scene);
+        let force =
+            |(segment, point, force): (String, _, _)| Pushed { label: plain_name(&segment), segment, point, force };
         Ok(Scene {
             title: scenario.title.clone(),
             person,
@@ -107,7 +120,9 @@ impl Figure {
             things: body.things(),
             loads: body.hung(),
             tables: document.things(),
+            forces: document.forces().into_iter().map(force).collect(),
             strategy: document.strategy().to_owned(),
+            regions: document.regions(&body.model),
             notes: scenario.notes.clone(),
             can_undo: can.0,
             can_redo: can.1,

@@ -6,13 +6,17 @@ use contrapposto::model::{Model, plain_name};
 use contrapposto::posture::Posture;
 
 use crate::balance::balance;
+use crate::body::read_play;
 use crate::document::Document;
 use crate::drawn::{self, Motion};
 use crate::error::Refusal;
 use crate::figure::Figure;
 use crate::history::History;
-use crate::message::{Answer, Handle, Request};
+use crate::message::{Answer, Course, Handle, Request};
+use crate::person;
 use crate::play::Play;
+use crate::recorded;
+use crate::report::{self, Moment, Told};
 use crate::rest;
 use crate::sides;
 
@@ -33,6 +37,8 @@ pub(crate) struct Job {
 struct Grab {
     handle: Handle,
     figure: Figure,
+    /// A foot that carries weight is put elsewhere.
+    slides: bool,
 }
 
 impl Job {
@@ -52,23 +58,56 @@ impl Job {
         &self.figure.body.model
     }
 
-    /// The posture that is shown, or the run so far, as glTF.
-    pub(crate) fn gltf(&self, skin: Option<&[u8]>) -> Result<Answer, Refusal> {
-        let things = &self.figure.body.scenario.things;
-        Ok(Answer::Bytes { bytes: drawn::gltf((self.model(), things), self.title(), &self.motion(), skin)? })
+    /// A course, by default the run so far or the posture that is shown, as glTF.
+    pub(crate) fn gltf(&self, skin: Option<&[u8]>, course: Option<Course>) -> Result<Answer, Refusal> {
+        let motion = self.motion(course.as_ref())?;
+        // A run puts things down, also one that another session has carried out.
+        let things = match &self.play {
+            Some(play) => play.things().to_vec(),
+            None if motion.0.len() > 1 => read_play(&self.document_as_shown())?.things,
+            None => self.figure.body.scenario.things.clone(),
+        };
+        Ok(Answer::Bytes { bytes: drawn::gltf((self.model(), &things), self.title(), &motion, skin)? })
+    }
+
+    /// Document and course, for a session of the module that has all writers.
+    pub(crate) fn elsewhere(&self) -> Result<Answer, Refusal> {
+        let (times, postures) = self.motion(None)?;
+        let course = Course { times, postures: postures.into_iter().map(<[f64]>::to_vec).collect() };
+        let samples = self.play.as_ref().map_or(0, Play::samples);
+        Ok(Answer::Elsewhere { state: self.document_as_shown().state()?, course: Some(course), samples })
+    }
+
+    /// The posture that is shown, or the run so far, as `report.html`.
+    pub(crate) fn report(&mut self, skin: Option<&[u8]>, charts: &str) -> Result<Answer, Refusal> {
+        let figure = self.grab.as_mut().map_or(&mut self.figure, |grab| &mut grab.figure);
+        let (moments, run) = match &self.play {
+            Some(play) => (play.moments(&figure.body)?, Some((play.decisions(), play.levels()))),
+            None => (vec![Moment { time: 0.0, shown: figure.shown()?, fatigue: vec![] }], None),
+        };
+        let things = self.play.as_ref().map_or(figure.body.scenario.things.as_slice(), Play::things);
+        let text = report::html(&Told { body: &figure.body, things, moments, run, skin }, charts)?;
+        Ok(Answer::Text { text })
     }
 
     fn title(&self) -> &str {
         &self.figure.body.scenario.title
     }
 
-    /// Times and postures of the run so far, at even steps; without a run the posture that is shown.
-    fn motion(&self) -> Motion<'_> {
+    /// Times and postures of a course; without one of the run so far, at even steps; without a run the posture that is shown.
+    fn motion<'a>(&'a self, course: Option<&'a Course>) -> Result<Motion<'a>, Refusal> {
         let figure = self.grab.as_ref().map_or(&self.figure, |grab| &grab.figure);
-        match &self.play {
+        if let Some(Course { times, postures }) = course {
+            let due = self.model().coordinates().len();
+            if times.len() != postures.len() || postures.iter().any(|posture| posture.len() != due) {
+                return Err(Refusal(format!("a course has one posture of {due} numbers at each of its times")));
+            }
+            return Ok((times.clone(), postures.iter().map(Vec::as_slice).collect()));
+        }
+        Ok(match &self.play {
             Some(play) => play.motion(),
             None => (vec![0.0], vec![figure.posture.values()]),
-        }
+        })
     }
 
     /// Answers a request that is not to open another job; `watch` is told how far a long one has come.
@@ -89,9 +128,16 @@ impl Job {
                 self.check_no_run()?;
                 Ok(Answer::Ways { ways: rest::ways(&self.figure, watch)? })
             }
+            Request::Motion { name, text } => recorded::motion(self.model(), &name, &text),
+            Request::At { q } => {
+                self.check_released()?;
+                let shown =
+                    if q.is_empty() { self.figure.shown()? } else { self.figure.still_in(&self.posture_of(&q)?)? };
+                Ok(Answer::Shown(Box::new(shown)))
+            }
             Request::Balance { coordinate } => self.balance(&coordinate),
-            Request::Bvh {} => {
-                let text = drawn::text(self.model(), self.title(), &self.motion())?;
+            Request::Bvh { course } => {
+                let text = drawn::text(self.model(), self.title(), &self.motion(course.as_ref())?)?;
                 Ok(Answer::Text { text })
             }
             Request::Export {} => Ok(self.export()),
@@ -104,6 +150,10 @@ impl Job {
     fn edit(&mut self, request: Request) -> Result<Answer, Refusal> {
         match request {
             Request::Adult { sex, stature, mass } => self.change(|document| document.set_adult(&sex, stature, mass)),
+            Request::Percentile { sex, percentile } => {
+                let (stature, mass) = person::at(&sex, percentile)?;
+                self.change(|document| document.set_adult(&sex, stature, mass))
+            }
             Request::Free { segment } => self.change(|document| {
                 document.free(&segment);
                 Ok(())
@@ -112,12 +162,15 @@ impl Job {
                 self.figure.body.segment(&segment)?;
                 self.change(|document| document.set_load(&segment, mass))
             }
+            Request::Push { segment, point, force } => {
+                self.figure.body.segment(&segment)?;
+                self.change(|document| document.set_force(&segment, point, force))
+            }
             Request::Put { word, keys } => self.change(|document| document.put(&word, keys)),
             Request::TakeAway { word, number } => self.change(|document| document.take_away(&word, number)),
-            Request::Strategy { kind } => self.change(|document| {
-                document.set_strategy(&kind);
-                Ok(())
-            }),
+            Request::Strategy { kind, region } => {
+                self.change(|document| document.set_strategy(&kind, region.as_deref()))
+            }
             Request::Go { q } => self.go_to(&q),
             Request::Mirror {} => {
                 self.check_released()?;
@@ -162,15 +215,20 @@ impl Job {
 
     /// Goes to a posture.
     fn go_to(&mut self, q: &[f64]) -> Result<Answer, Refusal> {
-        let due = self.figure.posture.values().len();
-        if q.len() != due {
-            return Err(Refusal(format!("{} numbers are given; the body has {due} coordinates", q.len())));
-        }
-        let posture = self.figure.body.named(&Posture::new(q.to_vec()));
+        let posture = self.figure.body.named(&self.posture_of(q)?);
         self.change(|document| {
             document.posture = posture;
             Ok(())
         })
+    }
+
+    /// A posture by the values of all coordinates.
+    fn posture_of(&self, q: &[f64]) -> Result<Posture, Refusal> {
+        let due = self.figure.posture.values().len();
+        if q.len() == due {
+            return Ok(Posture::new(q.to_vec()));
+        }
+        Err(Refusal(format!("{} numbers are given; the body has {due} coordinates", q.len())))
     }
 
     /// Undo, or redo: the posture is that in which the state was left. A run ends.
@@ -200,8 +258,13 @@ impl Job {
         self.check_no_run()?;
         let body = &self.figure.body;
         let (index, label) = (body.segment(&segment)?, plain_name(&segment));
-        if body.scenario.supports.iter().any(|support| support.segment == index) {
-            return Err(Refusal(format!("the {label} carries weight and stays where it is")));
+        let support = body.support_on(index);
+        if let Some(support) = support
+            && !body.is_on_ground(support)?
+        {
+            return Err(Refusal(format!(
+                "the {label} carries weight and stays where it is; only a foot on the floor is put elsewhere"
+            )));
         }
         if point.iter().any(|x| !x.is_finite()) {
             return Err(Refusal::of("the point that is grabbed has a number that is not finite"));
@@ -213,9 +276,9 @@ impl Job {
         let mut document = self.history.document().clone();
         document.posture = self.figure.named();
         document.hold(handle.clone(), self.figure.place(&handle)?);
-        let mut figure = Figure::dragging(&document)?;
+        let mut figure = Figure::dragging(&document, support)?;
         let shown = figure.shown()?;
-        self.grab = Some(Grab { handle, figure });
+        self.grab = Some(Grab { handle, figure, slides: support.is_some() });
         Ok(Answer::Shown(Box::new(shown)))
     }
 
@@ -225,9 +288,10 @@ impl Job {
         Ok(Answer::Shown(Box::new(grab.figure.drag(target.into())?)))
     }
 
-    /// Lets go. Where neither the body nor the points that are held have changed, no change is recorded.
+    /// Lets go; a foot that has been put elsewhere stands there. Where neither the body nor the points that are held have changed, no change is recorded.
     fn release(&mut self, hold: bool) -> Result<Answer, Refusal> {
-        let Some(Grab { handle, figure }) = &self.grab else { return Err(Refusal::of("nothing is grabbed")) };
+        let Some(Grab { handle, figure, slides }) = &self.grab else { return Err(Refusal::of("nothing is grabbed")) };
+        let hold = hold && !slides;
         let mut document = self.history.document().clone();
         let held = document.holds(&handle.segment);
         if figure.is_at_start() && hold == held {

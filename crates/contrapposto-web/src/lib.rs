@@ -1,6 +1,6 @@
 //! Runs the science inside a browser: one session, which takes requests as JSON texts and answers them as JSON texts.
 //!
-//! A session holds a scenario as a document ([`document`]). Everything that it shows is computed from what the readers of
+//! A session holds a scenario as a document (`document.rs`). Everything that it shows is computed from what the readers of
 //! `contrapposto-formats` make of that document, so an exported scenario is the one that was shown. The same calls can be made natively:
 //! [`Studio`] has no part of the browser in it.
 //!
@@ -8,7 +8,8 @@
 //! |---|---|
 //! | `message` | requests and answers |
 //! | `document`, `events` | the scenario file, its changes, the files that it names |
-//! | `things` | tables of the file that put things there |
+//! | `things`, `strategies` | tables of the file that put things there, and of strategies by region |
+//! | `person` | the people that a size stands for |
 //! | `history` | all states of the document, for undo and redo |
 //! | `body` | what the readers make of the document |
 //! | `mover` | steps of a posture: dragged, or settling |
@@ -17,10 +18,15 @@
 //! | `shown` | everything that is shown of one posture |
 //! | `balance` | the torques of one joint over its range |
 //! | `drawn` | glTF and BVH |
+//! | `recorded` | a motion of a file |
+//! | `report` | report.html |
 //! | `rest` | the different ways to rest |
 //! | `sides` | left and right exchanged |
 //! | `sample`, `play` | a run over time |
 //! | `job`, `studio` | the session |
+
+/// Whether the module has the readers of model files, and the writers of files for other programs.
+pub(crate) const HAS_ALL: bool = cfg!(feature = "all");
 
 mod balance;
 mod body;
@@ -33,12 +39,16 @@ mod history;
 mod job;
 mod message;
 mod mover;
+mod person;
 mod play;
+mod recorded;
+mod report;
 mod rest;
 mod sample;
 mod shown;
 mod sides;
 mod skin;
+mod strategies;
 mod studio;
 mod things;
 
@@ -78,6 +88,11 @@ impl Session {
     /// Takes the bytes of the file of the skin, which the request `skin` needs.
     pub fn take_skin(&mut self, file: Vec<u8>) {
         self.0.take_skin(file);
+    }
+
+    /// Takes the text of the chart library, which the request `report` needs.
+    pub fn take_charts(&mut self, text: String) {
+        self.0.take_charts(text);
     }
 
     /// Answers a request; a search tells the function `tellSought` of the worker how many postures it has sought.

@@ -20,7 +20,9 @@ pub(crate) enum Request {
     OpenModel { name: String, text: String },
     /// Gives the built-in adult another size; posture and held points begin anew.
     Adult { sex: String, stature: f64, mass: f64 },
-    /// Takes hold of a point of a segment, in the segment's frame.
+    /// Gives the built-in adult the stature and the mass that so many percent of people of that sex do not exceed, each alone.
+    Percentile { sex: String, percentile: f64 },
+    /// Takes hold of a point of a segment, in the segment's frame. A foot that carries weight is put elsewhere on its floor.
     Grab { segment: String, point: [f64; 3] },
     /// One step of the point that was grabbed toward a place in ground.
     Drag { target: [f64; 3] },
@@ -32,13 +34,20 @@ pub(crate) enum Request {
     Settle {},
     /// Hangs a weight on a segment in place of the one that hangs there; 0 takes it off.
     Load { segment: String, mass: f64 },
+    /// Pushes on a point of a segment, in the segment's frame, with a force in ground, N, in place of the force that pushes on that segment;
+    /// no force takes it off.
+    Push { segment: String, point: [f64; 3], force: [f64; 3] },
     /// Puts a thing there, by a table of the scenario file: its word (`box`, `seat`, ...) and its keys. But for a bag and a tool that is only
     /// carried, posture and held points begin anew.
     Put { word: String, keys: Table },
     /// Takes the thing of a table away; `number` counts the tables of this word from 0.
     TakeAway { word: String, number: usize },
-    /// Strategy of the whole body: `active` or `passive`.
-    Strategy { kind: String },
+    /// Strategy, `active` or `passive`, of a region (`spine`, `neck`, `arms`, `legs`), or of the whole body.
+    Strategy {
+        kind: String,
+        #[serde(default)]
+        region: Option<String>,
+    },
     /// Lets time run for so many samples; the first call begins a run.
     Play { samples: u32 },
     /// Ends the run; `take`: the body stays in the posture, and its muscles as tired, as it has come to.
@@ -49,6 +58,10 @@ pub(crate) enum Request {
     Relax {},
     /// Goes to a posture, by the values of all coordinates.
     Go { q: Vec<f64> },
+    /// Shows a posture, held still on the supports of the job, without going there; an empty one shows that of the job again.
+    At { q: Vec<f64> },
+    /// The postures of a recorded motion, an OpenSim table, as those of this body.
+    Motion { name: String, text: String },
     /// Exchanges left and right: posture, held points, weights, fatigue, strategies.
     Mirror {},
     /// The run at a moment that has passed, s: of the samples that are kept, the last one until then.
@@ -56,9 +69,18 @@ pub(crate) enum Request {
     /// The skin of the body, from the file that the session was given.
     Skin {},
     /// The posture that is shown, or the run so far, as glTF; with the skin, unless `wooden`.
-    Gltf { wooden: bool },
+    Gltf {
+        wooden: bool,
+        #[serde(default)]
+        course: Option<Course>,
+    },
     /// The same as BVH.
-    Bvh {},
+    Bvh {
+        #[serde(default)]
+        course: Option<Course>,
+    },
+    /// The posture that is shown, or the run so far, as `report.html`.
+    Report {},
     /// The scenario as a file.
     Export {},
     /// All of the present document as a text, for `restore` in another session.
@@ -71,6 +93,15 @@ pub(crate) enum Request {
     Redo {},
     /// Back to the scenario as it was opened.
     Reset {},
+}
+
+/// Postures over time.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Course {
+    /// s.
+    pub(crate) times: Vec<f64>,
+    /// Values of all coordinates at each.
+    pub(crate) postures: Vec<Vec<f64>>,
 }
 
 /// The answer to a request.
@@ -91,8 +122,13 @@ pub(crate) enum Answer {
     Skin { skin: Option<SkinScene> },
     /// A file.
     Bytes { bytes: Vec<u8> },
+    /// A recorded motion, and sentences about faults of its file.
+    Motion { course: Course, notes: Vec<String> },
     /// A text.
     Text { text: String },
+    /// The module with all readers and writers answers this request: one that opens something in place of this session, another one in a
+    /// session with this document, for this course, or after a run of so many samples.
+    Elsewhere { state: String, course: Option<Course>, samples: u64 },
     /// The request was refused; nothing has changed.
     Refused { sentence: String },
 }
@@ -111,7 +147,11 @@ pub(crate) struct Scene {
     pub(crate) loads: Vec<Hung>,
     /// Tables of the scenario file that put things there.
     pub(crate) tables: Vec<ThingTable>,
+    /// Forces that push on segments.
+    pub(crate) forces: Vec<Pushed>,
     pub(crate) strategy: String,
+    /// Strategies of the regions of the body.
+    pub(crate) regions: Vec<RegionScene>,
     pub(crate) notes: Vec<String>,
     pub(crate) can_undo: bool,
     pub(crate) can_redo: bool,
@@ -124,6 +164,15 @@ pub(crate) struct Person {
     pub(crate) sex: String,
     pub(crate) stature: f64,
     pub(crate) mass: f64,
+    /// Percent of people of that sex who do not exceed the stature, and the mass.
+    pub(crate) percentiles: [f64; 2],
+}
+
+/// A region of the body with its strategy: `active`, `passive`, or `mixed`.
+#[derive(Debug, Serialize)]
+pub(crate) struct RegionScene {
+    pub(crate) name: &'static str,
+    pub(crate) strategy: &'static str,
 }
 
 /// A coordinate with its two muscle groups.
@@ -210,6 +259,15 @@ pub(crate) struct Hung {
     pub(crate) mass: f64,
 }
 
+/// A force that pushes on a point of a segment: in the segment's frame, m, and in ground, N.
+#[derive(Debug, Serialize)]
+pub(crate) struct Pushed {
+    pub(crate) segment: String,
+    pub(crate) label: String,
+    pub(crate) point: [f64; 3],
+    pub(crate) force: [f64; 3],
+}
+
 /// One posture and its torques, by coordinate; of three-axis joints about the axes that stand for their coordinates.
 #[derive(Debug, Serialize)]
 pub(crate) struct Shown {
@@ -265,6 +323,8 @@ pub(crate) struct Played {
     pub(crate) log: Vec<LogLine>,
     /// Number of all decisions.
     pub(crate) decisions: u64,
+    /// Indices of the things that have been put down.
+    pub(crate) put_down: Vec<usize>,
     /// The reason for which the run ended; `None` while it goes on.
     pub(crate) ended: Option<&'static str>,
     pub(crate) shown: Shown,

@@ -23,8 +23,17 @@ const SETTLED: f64 = 1e-6;
 #[derive(Debug)]
 pub(crate) struct Mover {
     pub(crate) engine: Engine<'static>,
-    /// Level, segment and point that is dragged.
-    dragged: Option<(usize, usize, Vector3<f64>)>,
+    dragged: Option<Dragged>,
+}
+
+/// The point that is dragged.
+#[derive(Clone, Copy, Debug)]
+struct Dragged {
+    level: usize,
+    segment: usize,
+    point: Vector3<f64>,
+    /// Only along the ground.
+    sliding: bool,
 }
 
 /// The outcome of a step.
@@ -42,15 +51,23 @@ impl Mover {
         Self::new(body, posture, body.scenario.goals.clone(), true, None)
     }
 
-    /// With a point that is dragged: a task of the body's scenario holds it at `place`, ground, m.
-    pub(crate) fn dragging(body: &Body, posture: &Posture, handle: &Handle, place: [f64; 3]) -> Result<Self, Refusal> {
+    /// With a point that is dragged: a task of the body's scenario holds it at a place in ground, m. `sliding`: its height is that of its support.
+    pub(crate) fn dragging(
+        body: &Body,
+        posture: &Posture,
+        (handle, place): (&Handle, [f64; 3]),
+        sliding: bool,
+    ) -> Result<Self, Refusal> {
         let segment = body.segment(&handle.segment)?;
         let (point, target) = (Vector3::from(handle.point), Vector3::from(place));
         let task = Task::Point(Point { segment, point, target, axes: [true; 3] });
-        let levels = body.scenario.goals.clone();
+        let mut levels = body.scenario.goals.clone();
         let level = levels.iter().position(|level| level.tasks.first() == Some(&task));
         let level = level.ok_or_else(|| Refusal(format!("the {} cannot be dragged", handle.label)))?;
-        Self::new(body, posture, levels, false, Some((level, segment, point)))
+        if let Some(Task::Point(task)) = levels[level].tasks.first_mut() {
+            task.axes[1] = !sliding;
+        }
+        Self::new(body, posture, levels, false, Some(Dragged { level, segment, point, sliding }))
     }
 
     fn new(
@@ -58,7 +75,7 @@ impl Mover {
         posture: &Posture,
         levels: Vec<PriorityLevel>,
         reject_steps: bool,
-        dragged: Option<(usize, usize, Vector3<f64>)>,
+        dragged: Option<Dragged>,
     ) -> Result<Self, Refusal> {
         let options = Options { reject_steps, max_step: STEP, local_minima: 0, ..Options::least_effort() };
         let scenario = &body.scenario;
@@ -72,10 +89,11 @@ impl Mover {
 
     /// One step of the dragged point toward a place in ground, m.
     pub(crate) fn drag(&mut self, body: &Body, posture: &mut Posture, target: Vector3<f64>) -> Result<Moved, Refusal> {
-        let Some((level, segment, point)) = self.dragged else {
+        let Some(Dragged { level, segment, point, sliding }) = self.dragged else {
             return Err(Refusal::of("nothing is grabbed; `grab` comes before `drag`"));
         };
         let at = body.kinematics(posture)?.station(&body.model, segment, point);
+        let target = if sliding { Vector3::new(target.x, at.y, target.z) } else { target };
         let way = target - at;
         let near = at + way * (REACH / way.norm()).min(1.0);
         if let Some(Task::Point(task)) = self.engine.levels_mut()[level].tasks.first_mut() {

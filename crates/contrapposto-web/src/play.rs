@@ -5,7 +5,7 @@ use contrapposto::model::plain_group_name;
 use contrapposto::simulation::{Event, ReliefRecord, Run, Scenario, StopReason, Summary};
 use contrapposto::statics::Load;
 use contrapposto::verdict::Verdict;
-use contrapposto_formats::{VerdictText, relief_sentence};
+use contrapposto_formats::{RunScenario, Thing, VerdictText, relief_sentence};
 use self_cell::self_cell;
 
 use crate::body::{Body, read_play};
@@ -13,6 +13,7 @@ use crate::document::Document;
 use crate::drawn::Motion;
 use crate::error::Refusal;
 use crate::message::{LogLine, Played};
+use crate::report::Moment;
 use crate::sample::LastSample;
 use crate::shown;
 
@@ -20,6 +21,8 @@ use crate::shown;
 const TIME_TOLERANCE: f64 = 1e-9;
 /// Most samples of the past that are kept, for looking back.
 const MOST_KEPT: usize = 1_000;
+/// About so many moments are in a report.
+const MOST_MOMENTS: usize = 200;
 /// Lines of the log that are given with every answer.
 const MOST_LINES: usize = 40;
 
@@ -37,6 +40,8 @@ self_cell!(
 #[derive(Debug)]
 pub(crate) struct Play {
     course: Course,
+    /// Things around the body and in its hands, with the times at which they are put down.
+    things: Vec<Thing>,
     pub(crate) last: LastSample,
     /// Samples that have passed, one of so many, so that there are never more than [`MOST_KEPT`].
     past: Vec<LastSample>,
@@ -46,14 +51,14 @@ pub(crate) struct Play {
 impl Play {
     /// A run of a document from its start.
     pub(crate) fn new(document: &Document) -> Result<Self, Refusal> {
-        let scenario = read_play(document)?.scenario;
+        let RunScenario { scenario, things, .. } = read_play(document)?;
         let course = Course::try_new(scenario, |scenario| Run::new(scenario)).map_err(Refusal::of)?;
-        Ok(Self { course, last: LastSample::default(), past: vec![], every: 1 })
+        Ok(Self { course, things, last: LastSample::default(), past: vec![], every: 1 })
     }
 
     /// The next samples.
     pub(crate) fn advance(&mut self, body: &Body, samples: u32) -> Result<Played, Refusal> {
-        let Self { course, last, past, every } = self;
+        let Self { course, last, past, every, .. } = self;
         let mut ended = false;
         course.with_dependent_mut(|_, run| {
             for _ in 0..samples {
@@ -85,6 +90,38 @@ impl Play {
     pub(crate) fn motion(&self) -> Motion<'_> {
         let kept = if self.past.is_empty() { std::slice::from_ref(&self.last) } else { &self.past };
         kept.iter().map(|sample| (sample.time, sample.posture.as_slice())).unzip()
+    }
+
+    /// Things around the body and in its hands, with the times at which they are put down.
+    pub(crate) fn things(&self) -> &[Thing] {
+        &self.things
+    }
+
+    /// Number of the samples of the run so far.
+    pub(crate) fn samples(&self) -> u64 {
+        self.last.number + 1
+    }
+
+    /// The samples that are kept, and the last one; of many, some at even steps.
+    pub(crate) fn moments(&self, body: &Body) -> Result<Vec<Moment>, Refusal> {
+        let stride = self.past.len().div_ceil(MOST_MOMENTS).max(1);
+        let kept = self.past.iter().step_by(stride).filter(|sample| sample.number < self.last.number);
+        let moment = |sample: &LastSample| {
+            let shown = self.played(body, sample, false)?.shown;
+            Ok(Moment { time: sample.time, shown, fatigue: sample.fatigue.clone() })
+        };
+        kept.chain([&self.last]).map(moment).collect()
+    }
+
+    /// All decisions so far.
+    pub(crate) fn decisions(&self) -> Vec<LogLine> {
+        log(self.course.borrow_owner(), &self.course.borrow_dependent().summary(), f64::INFINITY, usize::MAX)
+    }
+
+    /// Fatigue at which relief begins and ends.
+    pub(crate) fn levels(&self) -> [f64; 2] {
+        let hysteresis = &self.course.borrow_owner().hysteresis;
+        [hysteresis.critical_level, hysteresis.recovery_level]
     }
 
     /// The strategy of every coordinate with muscles, where an event has changed them.
@@ -127,8 +164,9 @@ impl Play {
             samples: summary.samples,
             fatigue: last.fatigue.clone(),
             asking: last.asking.iter().map(group).collect(),
-            log: log(scenario, &summary, last.time),
+            log: log(scenario, &summary, last.time, MOST_LINES),
             decisions: summary.reliefs.count,
+            put_down: (0..self.things.len()).filter(|&i| !self.things[i].is_there(last.time)).collect(),
             ended: reason,
             shown: shown::sample(body, last, self.loads(last), verdict)?,
         })
@@ -149,11 +187,11 @@ fn keep(past: &mut Vec<LastSample>, every: &mut u64, sample: &LastSample) {
     }
 }
 
-/// The latest decisions until a moment, in the order in which they came.
-fn log(scenario: &Scenario, summary: &Summary, until: f64) -> Vec<LogLine> {
+/// The latest decisions until a moment, at most so many, in the order in which they came.
+fn log(scenario: &Scenario, summary: &Summary, until: f64, most: usize) -> Vec<LogLine> {
     let records = &summary.reliefs.records;
     let records = &records[..records.partition_point(|record| record.time.0 <= until + TIME_TOLERANCE)];
-    let latest = &records[records.len().saturating_sub(MOST_LINES)..];
+    let latest = &records[records.len().saturating_sub(most)..];
     let line =
         |record: &ReliefRecord| LogLine { time: record.time.0, sentence: relief_sentence(&scenario.model, record) };
     latest.iter().map(line).collect()

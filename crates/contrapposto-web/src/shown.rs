@@ -17,14 +17,20 @@ use crate::message::{ContactShown, Push, Shown};
 use crate::mover::Moved;
 use crate::sample::LastSample;
 
-/// A posture that is held still, by the engine that moves it.
-pub(crate) fn held(body: &Body, engine: &mut Engine<'_>, posture: &Posture, moved: Moved) -> Result<Shown, Refusal> {
+/// A posture that is held still, by the engine that moves it. `recorded`: supports are where it has them, and it has nothing to reach.
+pub(crate) fn held(
+    body: &Body,
+    engine: &mut Engine<'_>,
+    posture: &Posture,
+    recorded: bool,
+    moved: Moved,
+) -> Result<Shown, Refusal> {
     let levels = engine.report(posture).map_err(Refusal::of)?;
     let targets = engine.levels().iter().zip(levels.iter().map(|level| level.length));
-    let missed = Missed::of_levels(&body.model, posture, targets);
+    let missed = if recorded { vec![] } else { Missed::of_levels(&body.model, posture, targets) };
     let (torques, contact) = (engine.torques(), engine.contact());
     let numbers = Numbers::of(body, torques);
-    let start = body.kinematics(&body.scenario.start)?;
+    let start = body.kinematics(if recorded { posture } else { &body.scenario.start })?;
     let verdict = Verdict::of_posture(
         &body.model,
         &HeldPosture {

@@ -1,5 +1,6 @@
 //! Holds a session: requests and answers as JSON, and the job that was opened last.
 
+use crate::HAS_ALL;
 use crate::document::{Document, FIRST};
 use crate::error::Refusal;
 use crate::job::Job;
@@ -15,6 +16,8 @@ pub struct Studio {
     job: Option<Job>,
     /// The file of the skin.
     skin: Option<Vec<u8>>,
+    /// The chart library of a report.
+    charts: Option<String>,
 }
 
 impl Studio {
@@ -26,6 +29,11 @@ impl Studio {
     /// Takes the bytes of the file of the skin, which the request `skin` needs.
     pub fn take_skin(&mut self, file: Vec<u8>) {
         self.skin = Some(file);
+    }
+
+    /// Takes the text of the chart library, which the request `report` needs.
+    pub fn take_charts(&mut self, text: String) {
+        self.charts = Some(text);
     }
 
     /// Answers a request; both are JSON. A request that is refused changes nothing.
@@ -47,8 +55,14 @@ impl Studio {
         match request {
             Request::Open { scenario, files } => {
                 let text = if scenario.trim().is_empty() { FIRST } else { &scenario };
+                if !HAS_ALL && crate::body::has_model_file(text)? {
+                    return Ok(Answer::Elsewhere { state: String::new(), course: None, samples: 0 });
+                }
                 crate::body::check(text, &files)?;
                 self.open(Document::new(text, files)?)
+            }
+            Request::OpenModel { .. } if !HAS_ALL => {
+                Ok(Answer::Elsewhere { state: String::new(), course: None, samples: 0 })
             }
             Request::OpenModel { name, text } => {
                 let scenario = OF_MODEL.replace("{}", &name.replace(['"', '\\'], "_"));
@@ -65,7 +79,12 @@ impl Studio {
                         let file = skin.ok_or_else(|| Refusal::of("the skin has not been loaded"))?;
                         Ok(Answer::Skin { skin: skin::scene(job.model(), file) })
                     }
-                    Request::Gltf { wooden } => job.gltf(if wooden { None } else { skin }),
+                    Request::Gltf { .. } | Request::Bvh { .. } | Request::Report {} if !HAS_ALL => job.elsewhere(),
+                    Request::Gltf { wooden, course } => job.gltf(if wooden { None } else { skin }, course),
+                    Request::Report {} => {
+                        let charts = self.charts.as_deref();
+                        job.report(skin, charts.ok_or_else(|| Refusal::of("the chart library has not been loaded"))?)
+                    }
                     request => job.answer(request, watch),
                 }
             }

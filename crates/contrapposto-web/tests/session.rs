@@ -594,3 +594,228 @@ fn a_run_is_written_as_gltf_and_bvh_with_all_samples_that_are_kept() {
     let text = ask(&mut studio, json!({ "do": "bvh" }))["text"].as_str().unwrap().to_owned();
     assert!(text.starts_with("HIERARCHY") && text.contains("Frames: 12"), "{}", &text[..200]);
 }
+
+#[test]
+fn a_dragged_foot_stands_elsewhere_and_the_other_one_stays() {
+    let mut studio = Studio::new();
+    let (scene, last) = drag(&mut studio, "left foot", [0.22, 0.3, -0.06], 40);
+    let released = ask(&mut studio, json!({ "do": "release", "hold": true }));
+    let feet = |shown: &Value, name: &str| place(&scene, shown, &handle(&scene, name));
+    let moved = |name: &str| {
+        let (before, after) = (feet(&scene["shown"], name), feet(&released["shown"], name));
+        [0, 1, 2].map(|k| after[k] - before[k])
+    };
+    let [ahead, up, aside] = moved("left foot");
+    assert!((ahead - 0.22).abs() < 0.005 && up.abs() < 1e-4 && (aside + 0.06).abs() < 0.005, "{ahead} {up} {aside}");
+    assert!(moved("right foot").iter().all(|way| way.abs() < 1e-4));
+    let shares: f64 = last["contacts"].as_array().unwrap().iter().map(|contact| number(&contact["share"])).sum();
+    assert!((shares - 1.0).abs() < 1e-6, "{shares}");
+    assert_eq!(released["held"], json!([]));
+    // Sole and floor: all four corners of the patch are where the floor is.
+    let heights = released["shown"]["patches"].as_array().unwrap().iter().map(|corner| number(&corner[1]).abs());
+    assert!(heights.fold(0.0, f64::max) < 1e-4);
+    // The file says so, too: another session has the foot in the same place, and undo brings it back.
+    let text = exported(&mut studio);
+    let opened = ask(&mut Studio::new(), json!({ "do": "open", "scenario": text }));
+    let again = feet(&opened["shown"], "left foot");
+    let there = feet(&released["shown"], "left foot");
+    assert!((0..3).all(|k| (again[k] - there[k]).abs() < 1e-6), "{again:?} {there:?}");
+    let undone = ask(&mut studio, json!({ "do": "undo" }));
+    assert_eq!(feet(&undone["shown"], "left foot"), feet(&scene["shown"], "left foot"));
+}
+
+#[test]
+fn a_foot_that_is_dragged_into_the_other_one_stops_beside_it() {
+    let mut studio = Studio::new();
+    let (scene, last) = drag(&mut studio, "left foot", [0.05, 0.0, 0.3], 40);
+    let foot = |shown: &Value, name: &str| place(&scene, shown, &handle(&scene, name));
+    let (before, after) = (foot(&scene["shown"], "right foot"), foot(&last, "right foot"));
+    assert!((0..3).all(|k| (before[k] - after[k]).abs() < 1e-3), "the right foot moved from {before:?} to {after:?}");
+    // Soles do not overlap: the left one ends 2 cm to the left of where the right one begins.
+    let aside = |shown: &Value, from: usize| {
+        shown["patches"].as_array().unwrap()[from..from + 4].iter().map(|corner| number(&corner[2])).collect::<Vec<_>>()
+    };
+    let (one, other) = (aside(&last, 0), aside(&last, 4));
+    let most = |list: &[f64]| list.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = |list: &[f64]| list.iter().copied().fold(f64::INFINITY, f64::min);
+    let gap = (least(&one) - most(&other)).max(least(&other) - most(&one));
+    assert!((gap - 0.02).abs() < 0.003, "{gap}");
+    let released = ask(&mut studio, json!({ "do": "release", "hold": false }));
+    let verdict = &released["shown"]["verdict"];
+    assert!(["holds", "held_until"].contains(&verdict["kind"].as_str().unwrap()), "{verdict}");
+}
+
+#[test]
+fn a_pelvis_on_a_seat_and_a_foot_on_a_step_stay() {
+    let mut studio = Studio::new();
+    ask(&mut studio, json!({ "do": "open", "scenario": "format = 1\n[seat]\nheight_m = 0.45\n" }));
+    let sentence = refused(&mut studio, json!({ "do": "grab", "segment": "pelvis", "point": [0, 0, 0] }));
+    assert!(sentence.contains("carries weight"), "{sentence}");
+    ask(
+        &mut studio,
+        json!({ "do": "open", "scenario": "format = 1\n[[step]]\nheight_m = 0.2\nunder = \"right_foot\"\n" }),
+    );
+    refused(&mut studio, json!({ "do": "grab", "segment": "calcn_r", "point": [0, 0, 0] }));
+    ask(&mut studio, json!({ "do": "grab", "segment": "calcn_l", "point": [0, 0, 0] }));
+}
+
+#[test]
+fn a_recorded_motion_is_read_and_its_moments_are_shown() {
+    let mut studio = Studio::new();
+    let scene = ask(&mut studio, json!({ "do": "open", "scenario": "" }));
+    let head = "arms\nversion=1\nnRows=2\nnColumns=3\ninDegrees=yes\nendheader\ntime\telbow_flex_r\ttail_flex\n";
+    let text = format!("{head}0\t10\t1\n0.5\t90\t2\n");
+    let motion = ask(&mut studio, json!({ "do": "motion", "name": "arms.mot", "text": text }));
+    let names = scene["coordinates"].as_array().unwrap();
+    let elbow = names.iter().position(|coordinate| coordinate["name"] == "elbow_flex_r").unwrap();
+    assert_eq!(motion["course"]["times"], json!([0.0, 0.5]));
+    assert!(motion["notes"].to_string().contains("tail_flex"), "{}", motion["notes"]);
+    let q = &motion["course"]["postures"][1];
+    assert!((number(&q[elbow]) - 90f64.to_radians()).abs() < 1e-12);
+    let shown = ask(&mut studio, json!({ "do": "at", "q": q }));
+    assert_eq!(&shown["q"], q);
+    // A recorded moment has nothing to reach and slides nowhere, even where the job holds a hand.
+    let mut other = Studio::new();
+    drag(&mut other, "right hand", [0.2, 0.3, 0.0], 10);
+    ask(&mut other, json!({ "do": "release", "hold": true }));
+    let moment = ask(&mut other, json!({ "do": "at", "q": q }));
+    assert!(
+        ["holds", "held_until", "cannot_be_done"].contains(&moment["verdict"]["kind"].as_str().unwrap()),
+        "{}",
+        moment["verdict"]
+    );
+    // The weight of the bent forearm works about the elbow.
+    assert!(number(&shown["external"][elbow]).abs() > 1.0, "{}", shown["external"][elbow]);
+    // Nothing has changed.
+    assert_eq!(exported(&mut studio), {
+        let mut other = Studio::new();
+        ask(&mut other, json!({ "do": "open", "scenario": "" }));
+        exported(&mut other)
+    });
+    let sentence =
+        refused(&mut studio, json!({ "do": "motion", "name": "arms.mot", "text": format!("{head}0\t10\n") }));
+    assert!(sentence.contains("line 8"), "{sentence}");
+    refused(&mut studio, json!({ "do": "at", "q": [1.0] }));
+}
+
+/// External torque of an arm's hinge by a force on the hand: the force times the way of its point a radian (virtual work), whatever the feet do.
+#[test]
+fn a_force_on_a_hand_does_the_work_of_its_point_and_is_taken_off() {
+    let mut studio = Studio::new();
+    drag(&mut studio, "right hand", [0.3, 0.35, 0.1], 20);
+    let before = ask(&mut studio, json!({ "do": "release", "hold": true }));
+    let (point, force) = ([0.01, -0.05, 0.02], [-40.0, 12.0, 7.0]);
+    let push = json!({ "do": "push", "segment": "hand_r", "point": point, "force": force });
+    let pushed = ask(&mut studio, push.clone());
+    assert_eq!(
+        pushed["forces"],
+        json!([{ "segment": "hand_r", "label": "right hand", "point": point, "force": force }])
+    );
+    assert_eq!(before["shown"]["q"], pushed["shown"]["q"]);
+    let person = &before["person"];
+    let sex = if person["sex"] == "male" { Sex::Male } else { Sex::Female };
+    let size = Adult { sex, stature: number(&person["stature"]), mass: number(&person["mass"]), ..Adult::default() };
+    let model = adult(&size).unwrap();
+    let q: Vec<f64> = before["shown"]["q"].as_array().unwrap().iter().map(number).collect();
+    let hand = model.segment("hand_r").unwrap();
+    let mut kinematics = Kinematics::new(&model);
+    for name in ["elbow_flex_r", "pro_sup_r", "wrist_flex_r", "wrist_dev_r"] {
+        let i = model.coordinate(name).unwrap();
+        let mut at = |shift: f64| {
+            let mut q = q.clone();
+            q[i] += shift;
+            kinematics.update(&model, &Posture::new(q)).unwrap();
+            kinematics.station(&model, hand, point.into())
+        };
+        let work = (at(1e-6) - at(-1e-6)).dot(&nalgebra::Vector3::from(force)) / 2e-6;
+        let change = number(&pushed["shown"]["external"][i]) - number(&before["shown"]["external"][i]);
+        assert!((change - work).abs() < 1e-6, "{name}: {change} and {work} N m");
+    }
+    // Another force replaces it; a weight stays beside it; no force takes it off.
+    ask(&mut studio, json!({ "do": "load", "segment": "hand_r", "mass": 2.0 }));
+    let other =
+        ask(&mut studio, json!({ "do": "push", "segment": "hand_r", "point": point, "force": [5.0, 0.0, 0.0] }));
+    assert_eq!((other["forces"].as_array().unwrap().len(), other["loads"].as_array().unwrap().len()), (1, 1));
+    assert_eq!(saved(&mut studio)["load"].as_array().unwrap().len(), 2);
+    let off = ask(&mut studio, json!({ "do": "push", "segment": "hand_r", "point": point, "force": [0.0, 0.0, 0.0] }));
+    assert_eq!((off["forces"].as_array().unwrap().len(), off["loads"].as_array().unwrap().len()), (0, 1));
+    let missing = json!({ "do": "push", "segment": "tail", "point": point, "force": force });
+    assert!(refused(&mut studio, missing).contains("there is no segment `tail`"));
+
+    // The mirror image is pushed at the same place of the other hand, from the other side.
+    let before = ask(&mut studio, push);
+    let image = ask(&mut studio, json!({ "do": "mirror" }));
+    assert_eq!(image["forces"][0]["segment"], "hand_l");
+    assert_eq!(image["forces"][0]["force"], json!([-40.0, 12.0, -7.0]));
+    let [held, at] = [&before, &image].map(|scene| place(scene, &scene["shown"], &scene["forces"][0]));
+    assert!((held[0] - at[0]).abs() < 1e-9 && (held[1] - at[1]).abs() < 1e-9 && (held[2] + at[2]).abs() < 1e-9);
+}
+
+#[test]
+fn a_strategy_of_a_region_is_that_of_its_joints_in_the_run_and_in_the_file() {
+    let mut studio = Studio::new();
+    let open = ask(&mut studio, json!({ "do": "open", "scenario": "" }));
+    let kinds = |scene: &Value| -> Vec<(String, String)> {
+        let word = |value: &Value| value.as_str().unwrap().to_owned();
+        scene["regions"].as_array().unwrap().iter().map(|r| (word(&r["name"]), word(&r["strategy"]))).collect()
+    };
+    let regions = ["arms", "spine", "neck", "legs"];
+    assert_eq!(kinds(&open), regions.map(|name| (name.to_owned(), "passive".to_owned())));
+    let legs = ask(&mut studio, json!({ "do": "strategy", "kind": "active", "region": "legs" }));
+    assert_eq!(kinds(&legs)[3], ("legs".to_owned(), "active".to_owned()));
+    assert_eq!((kinds(&legs)[0].1.as_str(), &legs["strategy"]), ("passive", &json!("passive")));
+    assert_eq!(saved(&mut studio)["strategy"]["of"]["legs"].as_str(), Some("active"));
+    // A run reads the file: the program has the same strategies of the same joints.
+    let text = exported(&mut studio);
+    let run = contrapposto_formats::read_run("studio.toml", text.as_bytes(), None).unwrap().scenario;
+    let of = |name: &str| run.strategies[run.model.coordinate(name).unwrap()];
+    assert_ne!(of("knee_angle_r"), of("elbow_flex_r"));
+    // A joint that the file names itself makes its region mixed; the region's own choice replaces it.
+    let text = text.replace("legs = \"active\"", "legs = \"active\"\nknee_angle_r = \"passive\"");
+    let mixed = ask(&mut studio, json!({ "do": "open", "scenario": text }));
+    assert_eq!(kinds(&mixed)[3].1, "mixed");
+    let again = ask(&mut studio, json!({ "do": "strategy", "kind": "passive", "region": "legs" }));
+    assert_eq!(kinds(&again)[3].1, "passive");
+    assert!(saved(&mut studio)["strategy"].get("of").is_none());
+    let whole = ask(&mut studio, json!({ "do": "strategy", "kind": "active" }));
+    assert!(kinds(&whole).iter().all(|(_, kind)| kind == "active"));
+    let refusal = refused(&mut studio, json!({ "do": "strategy", "kind": "active", "region": "tail" }));
+    assert_eq!(refusal, "`tail` is no region of the body; there are arms, spine, neck, legs");
+    assert!(refused(&mut studio, json!({ "do": "strategy", "kind": "lazy" })).contains("passive, active"));
+}
+
+#[test]
+fn a_percentile_is_the_size_that_so_many_people_do_not_exceed() {
+    let mut studio = Studio::new();
+    for (sex, percentile) in [("female", 5.0), ("male", 95.0)] {
+        let scene = ask(&mut studio, json!({ "do": "percentile", "sex": sex, "percentile": percentile }));
+        assert_eq!(scene["person"]["sex"], sex);
+        for found in scene["person"]["percentiles"].as_array().unwrap() {
+            // Statures are to a millimetre, masses to a tenth of a kilogram.
+            assert!((number(found) - percentile).abs() < 0.2, "{found} for {percentile}");
+        }
+    }
+    // Quantiles of the normal distribution by its tables: 1.756 + 1.6449 0.0686 m.
+    let scene = ask(&mut studio, json!({ "do": "percentile", "sex": "male", "percentile": 95.0 }));
+    assert!((number(&scene["person"]["stature"]) - 1.869).abs() < 1e-9, "{}", scene["person"]);
+    let refusal = refused(&mut studio, json!({ "do": "percentile", "sex": "male", "percentile": 100.0 }));
+    assert_eq!(refusal, "the percentile is 100; it must lie between 1 and 99");
+}
+
+#[test]
+fn a_thing_that_is_put_down_in_a_run_is_told_from_then_on() {
+    let text = "format = 1\n[model]\nadult = { sex = \"female\", stature_m = 1.65, mass_kg = 60 }\n[floor]\n[[bag]]\nmass_kg = 5\non = \"right_hand\"\n\
+                [strategy]\nkind = \"passive\"\n[run]\nduration_s = 4\nstep_s = 0.5\n[[event]]\nat_s = 2\nload = []\n";
+    let mut studio = Studio::new();
+    let scene = ask(&mut studio, json!({ "do": "open", "scenario": text }));
+    // The bag, and the strap that it hangs by.
+    let things = scene["things"].as_array().unwrap();
+    let bag: Vec<usize> = (0..things.len()).filter(|&i| !things[i]["segment"].is_null()).collect();
+    assert!(!bag.is_empty());
+    let before = ask(&mut studio, json!({ "do": "play", "samples": 4 }));
+    assert_eq!((number(&before["time"]), &before["put_down"]), (1.5, &json!([])));
+    let after = ask(&mut studio, json!({ "do": "play", "samples": 3 }));
+    assert_eq!((number(&after["time"]), &after["put_down"]), (3.0, &json!(bag)));
+    let looked = ask(&mut studio, json!({ "do": "look", "time": 1.0 }));
+    assert_eq!(looked["put_down"], json!([]));
+}

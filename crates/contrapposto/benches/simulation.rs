@@ -27,6 +27,7 @@ fn ten_minutes() -> Scenario {
         start,
         free,
         supports: vec![],
+        rests: vec![],
         limits: vec![],
         tasks: vec![],
         events: vec![],

@@ -1,7 +1,5 @@
 //! Compares the built-in adult with the data sheet, and the direction of every coordinate with its name.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::data::library;
 use contrapposto::model::{Adult, AdultError, CoordinateKind, Model, Part, Sex, Side, adult};

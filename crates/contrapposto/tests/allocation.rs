@@ -1,8 +1,6 @@
 //! Functions that are called for every frame and step allocate nothing once their workspace is as large as the problem asks. Allocations of
 //! this thread are counted.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::batch::{Statics, Table, Wanted};
 use contrapposto::contact::{ContactForces, Support};
 use contrapposto::dynamics::Inertia;

@@ -1,7 +1,5 @@
 //! Tests that a group which works against the passive torque of its own joint is judged within the error of the recorded angle.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::assessment::{ANGLE_ERROR, AssessSettings, Assessment, GroupAssessment, Instant, assess};
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture::Posture;

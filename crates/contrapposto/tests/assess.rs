@@ -1,7 +1,5 @@
 //! Tests the assessment of a given motion: rates of sampling, mirrored bodies, peaks, supports, and refused motions.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::assessment::{AssessError, AssessSettings, Assessment, GroupAssessment, PeakKind, assess};
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Strategy;

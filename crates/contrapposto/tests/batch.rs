@@ -1,9 +1,7 @@
 //! Batches give each posture what it is given alone: to the bit beside any others and in any number of threads, and to rounding by the
 //! code that computes one posture.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
-mod trees;
+use crate::trees;
 
 use contrapposto::batch::{self, BatchError, Statics, Table, Wanted};
 use contrapposto::equilibria::{Aim, Search, equilibria};
@@ -397,6 +395,7 @@ fn held_arm(mass: f64) -> Scenario {
         start,
         free: vec![false; n],
         supports: vec![],
+        rests: vec![],
         limits: vec![],
         tasks: vec![],
         events: vec![],

@@ -1,9 +1,7 @@
 //! Every passive curve of the built-in data, over the range of every coordinate that has it: torque takes from the energy what it
 //! gives, slope is its derivative, and it falls everywhere. Seeded.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod support;
+use crate::support;
 
 use contrapposto::model::{Adult, Sex, adult, data};
 use contrapposto::passive::PassiveCurve;

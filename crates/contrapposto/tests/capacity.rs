@@ -1,8 +1,6 @@
 //! Compares the greatest forces at a hand with formulas by hand, with the statics of the body, and with an interior-point method.
 //! Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use std::collections::BTreeMap;
 
 use clarabel::algebra::CscMatrix;

@@ -1,7 +1,5 @@
 //! Distances of parts of the body from each other and from things, against dense sampling; rows against central differences.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::joint_torques::JointTorques;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Capsule, Model, adult};

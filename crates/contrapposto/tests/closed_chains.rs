@@ -1,8 +1,6 @@
 //! The slope that enters the tables for a body on its feet: the motion by dense projection, torques along it from their parts.
 //! Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::contact::{Balance, ContactForces, Support};
 use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
@@ -17,8 +15,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// Step of the difference along the motion, rad or m.
-#[path = "axes/mod.rs"]
-mod axes;
+use crate::axes;
 
 use axes::moved_about_axis;
 

@@ -1,8 +1,6 @@
 //! Contact forces: they balance the root, push and never pull, stay inside friction and patches, and need no more effort
 //! than those of an independent solver. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use contrapposto::contact::{Balance, Condition, ContactForces, FACES, Support, SupportError, root_rates};

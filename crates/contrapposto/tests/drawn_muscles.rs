@@ -1,7 +1,5 @@
 //! Tests drawn lines of muscles against their surfaces and lengths, and the work of muscles at one elbow, where it has a closed form.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::joint_torques::{JointMuscles, MuscleWork};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Placement, Side, adult};

@@ -1,8 +1,6 @@
 //! Inertia of moving bodies: against virtual work of point masses moved by central differences, the energy balance, and formulas by hand.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
-mod trees;
+use crate::trees;
 
 use contrapposto::dynamics::{Inertia, InertiaError, MotionError, Smoothing, SpeedError, differentiate};
 use contrapposto::joint_torques::{JointTorques, Quantities};

@@ -3,8 +3,6 @@
 //! 3CC-r is compared with its closed form and with an Euler integration of the test's own, the endurance integral with
 //! the data sheet's check values, strength with differences. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::fatigue::{Compartments, FatigueLaw, FatigueState, Hysteresis, REST_LOAD, ThreeCompartment};
 use contrapposto::model::Sex;
 use contrapposto::model::data::{FatigueSet, Status, library};

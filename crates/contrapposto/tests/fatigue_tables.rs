@@ -1,7 +1,5 @@
 //! Compares the tables of endurance by fatigue parameters in docs/holding-times.md with the embedded data; to write them anew:
-//! `CONTRAPPOSTO_WRITE_DOCS=1 cargo test -p contrapposto --test fatigue_tables`.
-
-#![allow(clippy::unwrap_used)]
+//! `CONTRAPPOSTO_WRITE_DOCS=1 cargo test -p contrapposto fatigue_tables`.
 
 use std::path::Path;
 

@@ -1,7 +1,5 @@
 //! Tests the equilibrium of fibres and tendon over all lengths of a path: forces that agree, and a tendon that never pushes.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::muscle::{DeGrooteFregly2016, FiberLaw, Millard2012, Muscle, MuscleSpec, Schutte1993, Thelen2003};
 
 /// Greatest isometric force, N.

@@ -1,7 +1,5 @@
 //! Checks supports whose place is free: the search puts a resting foot where effort is least, flat on the floor and within its region.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use std::sync::OnceLock;
 
 use contrapposto::contact::{Place, Region, Support};

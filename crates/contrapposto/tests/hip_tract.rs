@@ -1,7 +1,5 @@
 //! Tests the band of a hip against the balance of a leg that hangs in the modified Ober test, computed by statics of the whole body.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
 use contrapposto::joint_torques::{HipTract, JointTorques, Quantities, hip_tract};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Side, adult};

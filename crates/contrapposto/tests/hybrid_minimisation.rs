@@ -2,9 +2,7 @@
 //! never worse than the start, and a balance wherever a scan of 4,001 points sees one. Hand-made states meet all ten cases,
 //! and each gap of the printed tables is shown beside what is done instead (docs/deviations.md).
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod support;
+use crate::support;
 
 use contrapposto::hybrid::{
     Carrier, Case, Decision, Equilibrium, Extrapolation, Outcome, Problem, ProblemError, Strategy, explain, minimise,

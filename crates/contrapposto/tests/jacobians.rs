@@ -1,9 +1,7 @@
 //! Compares the Jacobians of points, segments and the centre of mass with central differences on random bodies of every
 //! joint kind, driven joints and chains of couplings included. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-mod trees;
+use crate::trees;
 
 use contrapposto::kinematics::{CenterOfMass, Kinematics};
 use contrapposto::model::Model;

@@ -1,8 +1,6 @@
 //! Tests the force and moment that joints transmit on the built-in adult with muscles: against sums over free bodies made another way, against
 //! virtual work, and against a leg whose numbers fit on paper.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::joint_torques::{JointReactions, PathForces};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::Function;

@@ -1,8 +1,6 @@
 //! Passive laws of strangers that are no number somewhere, or too large to calculate with: whatever the body is asked to do, the
 //! answer is finite or a complaint that names the joint or the row, and it comes.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::contact::{Balance, ContactForces, Support};
 use contrapposto::equilibria::{Aim, Search, equilibria};
 use contrapposto::fatigue::Hysteresis;
@@ -77,6 +75,7 @@ fn scenario(model: Model, on_its_feet: bool) -> Scenario {
         free: vec![on_its_feet; n],
         loads: vec![],
         supports: if on_its_feet { feet(&model) } else { vec![] },
+        rests: vec![],
         limits: vec![],
         tasks: if on_its_feet { vec![TaskSettings { goal: effort(&model), above_relief: false }] } else { vec![] },
         events: vec![],

@@ -1,8 +1,6 @@
 //! Tests muscles that tire while they share torques: against the law of a joint, a second derivation in small steps, and conditions of
 //! optimality.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::fatigue::{Compartments, FatigueLaw, FatigueState, ThreeCompartment};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};

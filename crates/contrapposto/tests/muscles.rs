@@ -1,7 +1,5 @@
 //! Tests paths of muscles on the built-in adult: moment arms against differences of lengths, and lines over surfaces.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::{Function, Spline};
 use contrapposto::model::{Adult, Model, Placement, adult};

@@ -2,9 +2,7 @@
 //! same workspace: answers are the same to the bit, those of a new workspace too, and the model is what it was. A stage that
 //! keeps a state on purpose is restarted.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-mod support;
+use crate::support;
 
 use contrapposto::assessment::{AssessSettings, assess};
 use contrapposto::constraint::{HalfSpace, relief_step};
@@ -77,6 +75,7 @@ impl Setting {
             free: vec![true; n],
             loads: self.loads.clone(),
             supports: self.supports.clone(),
+            rests: vec![],
             limits: vec![],
             tasks: self.goals.iter().map(task).collect(),
             events: vec![],

@@ -1,7 +1,5 @@
 //! Moves hand targets of the built-in adult out of reach and back.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture_solver::{Engine, Options};

@@ -1,9 +1,7 @@
 //! Every passive curve answers for itself: slope is the derivative of torque, torque minus the derivative of energy, the
 //! torque falls, and the angles of a given slope are those that a fine scan sees. Published values are met.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod support;
+use crate::support;
 
 use contrapposto::math::MonotoneCubic;
 use contrapposto::passive::{

@@ -1,7 +1,5 @@
 //! Tests the gradient of torques of tensions along paths on the built-in adult: against central differences, and its symmetry.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::joint_torques::{JointMuscles, JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::{Function, Spline};

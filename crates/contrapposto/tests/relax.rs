@@ -1,7 +1,5 @@
 //! Postures of least effort: balance, mirror images, determinism, history, and what happens where a body cannot stand.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::contact::{Balance, Condition, Missing, Support, root_rates};
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::joint_torques::{JointTorques, Quantities};

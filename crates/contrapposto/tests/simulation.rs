@@ -1,7 +1,5 @@
 //! Tests the loop of a simulation: recovery, balance of torques, ranges, events and time steps.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
 use contrapposto::joint_torques::Hazard;
@@ -34,6 +32,7 @@ fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
         start,
         free,
         supports: vec![],
+        rests: vec![],
         limits: vec![],
         tasks: vec![],
         events: vec![],

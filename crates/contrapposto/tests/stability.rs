@@ -1,8 +1,6 @@
 //! Tests the stability of postures: pendulums in closed form, stiffness against differences of torque, and the curvature of
 //! energy along motions that keep the feet in place. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::contact::{Balance, ContactForces, Support};
 use contrapposto::equilibria::{Stability, stability, stiffness};
 use contrapposto::hybrid::{Carrier, Equilibrium};
@@ -16,8 +14,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-#[path = "axes/mod.rs"]
-mod axes;
+use crate::axes;
 
 use axes::moved_about_axis;
 

@@ -1,7 +1,5 @@
 //! Tests activations of the least sum of squares at one elbow with two muscles, where they have closed forms.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::muscle::{

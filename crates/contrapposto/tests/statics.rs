@@ -4,8 +4,6 @@
 //! segment, columns by `r x (x - p)`. Three derivations must agree: the crate's recursion, the virtual-work sum, and
 //! differences of energy and torque. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{
     Adult, CoordinateSpec, JointKind, LARGEST, Model, ModelBuilder, ModelError, Motion, Placement, SegmentSpec, adult,

@@ -1,9 +1,7 @@
 //! Compares the Jacobian of every task with central differences of its error, on the whole adult and on random bodies with
 //! every joint kind, driven joints and couplings. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
-mod trees;
+use crate::trees;
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,6 @@
 //! Tests joints of three hinges: no load of muscles depends on the angles that describe an orientation. Seeded;
 //! `CONTRAPPOSTO_SEED` chooses another seed.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use contrapposto::joint_torques::{JointTorques, Quantities, effort, relative_load};

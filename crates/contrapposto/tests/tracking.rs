@@ -1,7 +1,5 @@
 //! Tests marker tracking: recovery of known postures, optimality by differences of an objective computed here, limits against a grid.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, SegmentSpec, adult};
 use contrapposto::posture::Posture;

@@ -1,7 +1,5 @@
 //! The whole built-in adult is complete, symmetric and upright, and every leg and spine coordinate turns the way its name says.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, AdultError, CoordinateKind, Model, Sex, adult, data::library};
 use contrapposto::passive::PassiveLaw;

@@ -50,7 +50,7 @@ pub(crate) struct SuggestArgs {
     /// Do not try changes of a job that does not hold with reserve. Each is a job of its own.
     #[arg(long)]
     pub(crate) no_suggest: bool,
-    /// Begin no further trial of a change after so many solver steps; without it twice those of the job itself, 100,000 at least.
+    /// Begin no further trial of a change after so many solver steps; without it twice those of the job itself, 150,000 at least.
     #[arg(long, value_name = "N", conflicts_with = "no_suggest")]
     pub(crate) suggest_steps: Option<usize>,
 }

@@ -26,11 +26,6 @@ const ADULT: &str = "adult.toml";
 /// it).
 const DOUBTFUL_TURN: f64 = 15.0 * std::f64::consts::PI / 180.0;
 
-/// Whether a file is an animation by its name.
-pub(crate) fn is_animation(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ["bvh", "glb", "gltf"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
-}
-
 pub(crate) fn animation(args: &TrackArgs) -> Result<(), Fail> {
     let out = ResultSet::open(&args.out, &[MOTION, ERRORS, ADULT])?;
     let sizing = sizing(args)?;

@@ -238,6 +238,8 @@ fn advice(scenario: &PoseScenario, verdict: &Verdict, steps: usize, suggest: Sug
         model: &scenario.model,
         start: &scenario.start,
         supports: &scenario.supports,
+        limits: &scenario.limits,
+        rests: vec![],
         levels: scenario.goals.iter().collect(),
         loads: vec![&scenario.loads],
         asked: None,

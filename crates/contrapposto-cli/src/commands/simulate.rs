@@ -31,8 +31,8 @@ use crate::view::words::how_long;
 use crate::view::{animation, tables};
 
 /// The scenarios of `contrapposto demo`: a person who waits, and the paper's Figure 8.
-const DEMO: (&str, &str) = ("scenarios/stand-relaxed.toml", include_str!("../../../../scenarios/stand-relaxed.toml"));
-const FIGURE_8: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../../scenarios/figure-08.toml"));
+const DEMO: (&str, &str) = ("scenarios/stand-relaxed.toml", scenario!("stand-relaxed"));
+const FIGURE_8: (&str, &str) = ("scenarios/figure-08.toml", scenario!("figure-08"));
 
 /// Files that a run may write, beside figures.
 const RUN_FILES: [&str; 17] = [
@@ -86,7 +86,7 @@ pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
     let page = args.out.join("report.html");
     print(&format!(
         "\nOpen {} in a browser. Then: `contrapposto new lift --out job.toml` writes a job of your own, `contrapposto simulate job.toml \
-         --out out` answers it; README.md lists all commands.\n",
+         --out out` answers it; `contrapposto --help` lists all commands.\n",
         page.display()
     ))
 }
@@ -130,11 +130,17 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     let summary = run.summary();
     let muscles = muscles_of_run(scenario, &files.recording, &summary)?;
     let mut answer = Answer::of_run(scenario, &summary);
+    let mut broken_off = false;
     if summary.reason != StopReason::Interrupted {
-        let trying = spinner(TRYING_CHANGES);
+        // Who waits for the changes has the answer of the job as it is.
+        let trying = spinner(format!("{} Now {TRYING_CHANGES}", answer.verdict.sentence));
         answer.advice = advice_of_run(&answer.verdict, scenario, (&summary, run.solver_steps()), suggest, goes_on);
         answer.advice.largest = largest_load(scenario, (largest, run.solver_steps()), suggest, goes_on);
         trying.finish();
+        broken_off = interruption::is_requested();
+        if broken_off {
+            answer.advice = Advice::broken_off();
+        }
     }
     let found = (&summary, muscles.as_ref());
     let text = match &files.folder {
@@ -148,9 +154,10 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         let files = files.folder.as_ref().map_or(String::new(), |folder| files_of_run(scenario, folder));
         answer.in_words(&scenario.model, &scenario.title, &tables) + &files
     })?;
-    match summary.reason == StopReason::Interrupted {
-        true => Err(Fail::Job(interrupted(&summary, scenario.run.duration, out))),
-        false => answered(&answer.verdict),
+    match (summary.reason, broken_off) {
+        (StopReason::Interrupted, _) => Err(Fail::Job(interrupted(&summary, scenario.run.duration, out))),
+        (_, true) => Err(Fail::Job("interrupted while changes of the job were tried; its answer is whole".to_owned())),
+        _ => answered(&answer.verdict),
     }
 }
 
@@ -161,6 +168,9 @@ fn not_standing(scenario: &Scenario, missing: Missing, folder: Option<&ResultSet
     let body = (&scenario.model, scenario.loads.as_slice());
     let advice = |verdict: &Verdict| {
         let advice = advice_without_posture(verdict, scenario, suggest, goes_on);
+        if interruption::is_requested() {
+            return Advice::broken_off();
+        }
         Advice { largest: largest_load(scenario, (largest, 0), suggest, goes_on), ..advice }
     };
     without_posture("summary.json", &scenario.title, body, (missing, advice), folder, json)

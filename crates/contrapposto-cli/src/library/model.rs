@@ -10,7 +10,6 @@ use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::tissue::{MuscleUse, Person, SourcedModel};
 use contrapposto_formats::xml::Limits;
 use contrapposto_formats::{MOST_BYTES, person};
-use contrapposto_sweep::size_at;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{Failure, Note, with_notes};
@@ -99,7 +98,7 @@ impl ModelSource {
             let message = format!("percentile is {percentile}; it must lie between 0 and 100");
             return Err(Failure::refused(message));
         }
-        let (stature, mass) = size_at(sex, percentile / 100.0);
+        let (stature, mass) = library().people().of_sex(sex).size_at(percentile / 100.0);
         Ok(Self::of(Kind::Adult { female: sex == Sex::Female, stature, mass, percentile: Some(percentile) }))
     }
 

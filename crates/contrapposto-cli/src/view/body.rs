@@ -92,7 +92,7 @@ fn around(model: &Model, stage: &Stage<'_>, frame: &Frame) -> Result<BodyPosture
     Ok(BodyPosture {
         ground: surroundings.ground,
         surfaces: surroundings.surfaces.into_iter().map(|surface| surface.corners).collect(),
-        things: stage.things.iter().map(thing).collect(),
+        things: stage.things.iter().filter(|thing| thing.is_there(frame.time)).map(thing).collect(),
         loads: loads.map(load).collect(),
         ..BodyPosture::default()
     })

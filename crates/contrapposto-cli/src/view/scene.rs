@@ -134,7 +134,8 @@ impl<'a> Scene<'a> {
             let frames = if thing.segment.is_some() { self.frames } else { &self.frames[..self.frames.len().min(1)] };
             let at = |frame| Ok::<_, Fail>(turn.place(&place(self.model, &self.kinematics(frame)?, thing)));
             let places = frames.iter().map(at).collect::<Result<_, _>>()?;
-            things.push(Thing { label: thing.name.clone(), size: thing.size.into(), places });
+            let put_down = self.frames.iter().position(|frame| !thing.is_there(frame.time));
+            things.push(Thing { label: thing.name.clone(), size: thing.size.into(), places, put_down });
         }
         Ok(things)
     }

@@ -19,12 +19,13 @@ pub(crate) fn joint(name: &str) -> String {
     if plain == name { plain } else { format!("{plain} ({name})") }
 }
 
-/// A moment of a motion or run, with a digit more than [`how_long`]: `0.52 s`, `52.0 s`, `7.95 min`, `1.667 h`. `clock` of the page does the same.
+/// A moment of a motion or run, with a digit more than [`how_long`]: `0.52 s`, `52.0 s`, `7.95 min`, `33.4 min`, `1.667 h`. `clock` of the page does the same.
 pub(crate) fn moment_in_words(seconds: f64) -> String {
     match seconds {
         _ if seconds < 9.95 => format!("{seconds:.2}\u{a0}s"),
         _ if seconds < 100.0 => format!("{seconds:.1}\u{a0}s"),
-        _ if seconds < 5970.0 => format!("{:.2}\u{a0}min", seconds / 60.0),
+        _ if seconds < 597.0 => format!("{:.2}\u{a0}min", seconds / 60.0),
+        _ if seconds < 5970.0 => format!("{:.1}\u{a0}min", seconds / 60.0),
         _ => format!("{:.3}\u{a0}h", seconds / 3600.0),
     }
 }

@@ -330,34 +330,3 @@ pub fn minimize(problem: &Problem) -> Answer {
         },
     )
 }
-
-/// Brackets of all sign changes of the extrapolated active torque on a grid of `n` points over the range.
-/// An exact zero, or a run of them, is reported as its own bracket (first zero, last zero).
-pub fn scan_roots(problem: &Problem, n: usize) -> Vec<(f64, f64)> {
-    let last = n.saturating_sub(1);
-    let mut brackets: Vec<(f64, f64)> = Vec::new();
-    let mut previous: Option<(f64, i8)> = None;
-    for i in 0..n {
-        // The last point is the limit itself, free of rounding.
-        let share = if last == 0 {
-            0.0
-        } else {
-            i as f64 / last as f64
-        };
-        let q = if i == last && i > 0 {
-            problem.q_max
-        } else {
-            problem.q_min + share * (problem.q_max - problem.q_min)
-        };
-        let here = sign(active_torque(problem, q));
-        let in_zeros = matches!(previous, Some((_, 0)));
-        match (previous, brackets.last_mut()) {
-            (_, Some(run)) if here == 0 && in_zeros => run.1 = q,
-            _ if here == 0 => brackets.push((q, q)),
-            (Some((before, s)), _) if s == -here => brackets.push((before, q)),
-            _ => {}
-        }
-        previous = Some((q, here));
-    }
-    brackets
-}

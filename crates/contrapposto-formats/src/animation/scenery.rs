@@ -31,8 +31,8 @@ const MATERIALS: [(&str, [f64; 4]); 3] = [
 /// Radii of shaft and head of an arrow, and the length of the head, m.
 const SHAFT: f64 = 0.012;
 const ARROW_HEAD: (f64, f64) = (0.034, 0.09);
-/// Least share of an arrow's own size: readers do not like a scale of nothing.
-const NO_ARROW: f64 = 1e-6;
+/// The share of its own size of what is not there: readers do not like a scale of nothing.
+const NOTHING: f64 = 1e-6;
 /// An arrow of its own size has this length, m; others are scaled as a whole.
 const ARROW_LENGTH: f64 = 0.3;
 /// Points and lengths of arrows are rounded to this, m, so that what hardly changes needs no keys.
@@ -44,12 +44,13 @@ pub(super) struct Around<'a> {
     model: &'a Model,
     things: &'a [Thing],
     arrows: &'a [Arrow],
+    times: &'a [f64],
 }
 
 impl<'a> Around<'a> {
     /// Of a clip.
-    pub(super) fn of(&Clip { model, things, arrows, .. }: &Clip<'a>) -> Self {
-        Self { model, things, arrows }
+    pub(super) fn of(&Clip { model, things, arrows, times, .. }: &Clip<'a>) -> Self {
+        Self { model, things, arrows, times }
     }
 
     /// Number of nodes.
@@ -60,7 +61,9 @@ impl<'a> Around<'a> {
     /// Placement and size of every node in posture number `index`, ground.
     pub(super) fn places(self, index: usize, frames: &[Placement]) -> Vec<(Placement, f64)> {
         let segment = |s: usize| carrier(self.model, s, &frames[s]);
-        let things = self.things.iter().map(|thing| (thing.place_by(segment), 1.0));
+        let time = self.times.get(index).copied().unwrap_or_default();
+        let size = |thing: &Thing| if thing.is_there(time) { 1.0 } else { NOTHING };
+        let things = self.things.iter().map(|thing| (thing.place_by(segment), size(thing)));
         let rounded = |v: Vector3<f64>| v.map(|x| (x / ARROW_GRAIN).round() * ARROW_GRAIN);
         let arrows = self.arrows.iter().map(|arrow| {
             let of = |list: &[Vector3<f64>]| rounded(list.get(index).or(list.last()).copied().unwrap_or_default());
@@ -68,7 +71,7 @@ impl<'a> Around<'a> {
             let turn = UnitQuaternion::rotation_between(&Vector3::y(), &along);
             let turn =
                 turn.unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
-            (Isometry3::from_parts(at.into(), turn), (along.norm() / ARROW_LENGTH).max(NO_ARROW))
+            (Isometry3::from_parts(at.into(), turn), (along.norm() / ARROW_LENGTH).max(NOTHING))
         });
         things.chain(arrows).collect()
     }

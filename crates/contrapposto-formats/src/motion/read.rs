@@ -98,7 +98,7 @@ fn columns<'a>(layout: &Layout<'a>, line: &'a str) -> Result<Vec<(Role, &'a str)
     for label in layout.labels(line) {
         let at = columns.len();
         let complain = |message: String, help: &str| Err(layout.error(Some(label), message, "here", help.to_owned()));
-        let is_time = label.eq_ignore_ascii_case("time");
+        let is_time = is_time(label);
         if at == MOST_COLUMNS {
             return complain(format!("the table has more than {MOST_COLUMNS} columns"), "keep fewer columns");
         }
@@ -120,6 +120,10 @@ fn columns<'a>(layout: &Layout<'a>, line: &'a str) -> Result<Vec<(Role, &'a str)
         }
         if layout.storage && at == 0 && !is_time {
             return complain(format!("the first column is `{label}`"), "it must be `time`");
+        }
+        if at == 0 && !is_time && is_like_time(label) {
+            let help = "name it `time`, with values in s; a coordinate of this name may stand in any other column";
+            return complain(format!("the first column, `{label}`, is like a time and would not be read as one"), help);
         }
         if is_time && at > 0 {
             return complain(format!("`{label}` is column {}", at + 1), "time stands once, in the first column");
@@ -145,6 +149,25 @@ fn columns<'a>(layout: &Layout<'a>, line: &'a str) -> Result<Vec<(Role, &'a str)
         return Err(layout.error(Some(line), "there is one column only".to_owned(), "no comma here", help.to_owned()));
     }
     Ok(columns)
+}
+
+/// Names of the column of time, s; capitals and spaces do not count.
+const TIME: [&str; 4] = ["time", "time_s", "time(s)", "time[s]"];
+/// Other names that stand for times or instants.
+const LIKE_TIME: [&str; 6] = ["t", "t_s", "s", "sec", "second", "seconds"];
+
+fn lower(label: &str) -> String {
+    label.replace(' ', "").to_lowercase()
+}
+
+/// Whether a column of this name is that of time.
+pub(super) fn is_time(label: &str) -> bool {
+    TIME.contains(&lower(label).as_str())
+}
+
+fn is_like_time(label: &str) -> bool {
+    let label = lower(label);
+    label.starts_with("time") || LIKE_TIME.contains(&label.as_str())
 }
 
 type Time<'a> = Option<(f64, &'a str)>;

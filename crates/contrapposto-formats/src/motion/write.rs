@@ -6,6 +6,7 @@ use std::fmt::Write;
 use contrapposto::model::{CoordinateKind, Model};
 
 use super::MOST_NAME_BYTES;
+use super::read::is_time;
 
 /// The reason for which a motion was not written: a file that [`super::read_table`] would refuse helps nobody.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -129,7 +130,7 @@ fn body<R: AsRef<[f64]>>(
     text.push_str("time");
     let mut seen = HashSet::new();
     for (label, _) in labels {
-        let fits = label.len() <= MOST_NAME_BYTES && !label.eq_ignore_ascii_case("time");
+        let fits = label.len() <= MOST_NAME_BYTES && !is_time(label);
         if !fits || !seen.insert(label.as_str()) {
             return Err(UnwritableTable::Name(label.clone()));
         }

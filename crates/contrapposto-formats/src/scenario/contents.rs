@@ -25,6 +25,8 @@ pub struct ScenarioContents {
     pub kinematics: Kinematics,
     /// The supports.
     pub supports: Vec<Support>,
+    /// Supports that only a run puts on their planes, when a muscle group is tired.
+    pub rests: Vec<Support>,
     /// The loads besides the body's weight.
     pub loads: Vec<Load>,
     /// The tasks, the most important first.
@@ -71,6 +73,7 @@ fn contents(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Sc
         start: setup.start,
         kinematics: setup.kinematics,
         supports: setup.supports?,
+        rests: setup.rests.into_iter().map(|(support, _)| support).collect(),
         loads: setup.loads,
         tasks,
         obstacles: setup.obstacles,

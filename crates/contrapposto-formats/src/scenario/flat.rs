@@ -142,13 +142,17 @@ fn check(at: &Located, model: &Model, i: usize, resting: &Resting, fit: &Fit) ->
          at most are taken out",
         rounded(steepest.to_degrees(), 1)
     );
-    let help = if resting.on_floor && fit.tilt <= STEEPEST && fit.gap > 0.0 {
+    let number = i.to_string();
+    let on = ["support", &number, "on"];
+    let help = if !at.holds(&["support", &number]) {
+        "no start was found in which all parts rest on their things: bring the things nearer to each other (`edge_m`, `height_m`), or let fewer parts \
+         rest on them (`carries`, `backrest`)"
+            .to_owned()
+    } else if resting.on_floor && fit.tilt <= STEEPEST && fit.gap > 0.0 {
         format!("add `step_m = {gap}` for a step under it, or change [posture]")
     } else {
         "change [posture], or the surface in `on`; a support stays where it is at the start".to_owned()
     };
-    let number = i.to_string();
-    let on = ["support", &number, "on"];
     let path = if at.holds(&on) { on } else { ["support", &number, "segment"] };
     Err(at.error(&path, message, Some(help)))
 }

@@ -8,7 +8,7 @@ use crate::toml_file::Located;
 const LONGEST_TITLE: usize = 200;
 
 /// Most tasks: the memory of the solver grows with their square.
-const MOST_TASKS: usize = 150;
+const MOST_TASKS: usize = 80;
 /// Most supports, loads, events, obstacles and things of a kind.
 const MOST_TABLES: usize = 1000;
 

@@ -1,6 +1,7 @@
 //! Reads the tasks of a scenario by priority.
 
-use contrapposto::tasks::PriorityLevel;
+use contrapposto::model::Model;
+use contrapposto::tasks::{PriorityLevel, Task};
 
 use super::stage::Stage;
 use super::task::task;
@@ -45,4 +46,16 @@ pub(super) fn levels(stage: &Stage<'_>, texts: &[TaskText]) -> Result<Vec<Level>
         }
     }
     Ok(levels)
+}
+
+/// Whether one of these tasks is effort.
+pub(super) fn is_effort(level: &PriorityLevel) -> bool {
+    level.tasks.iter().any(|task| matches!(task, Task::Effort(_)))
+}
+
+/// Adds tasks that the file does not name, just above effort, or as the last level.
+pub(super) fn add_above_effort(levels: &mut Vec<Level>, tasks: PriorityLevel, model: &Model) {
+    let place = levels.iter().position(|level| is_effort(&level.tasks)).unwrap_or(levels.len());
+    let labels = tasks.tasks.iter().map(|task| task.label(model)).collect();
+    levels.insert(place, Level { tasks, labels, above_relief: false, added: true });
 }

@@ -10,6 +10,7 @@ use contrapposto::tasks::{Placement, PriorityLevel, Task, free_place, held_place
 use nalgebra::Vector3;
 
 use super::fatigue_choice::LAW_KEYS;
+use super::rest::left_out;
 use super::setup::{Setup, present};
 use super::text::ScenarioText;
 use crate::input_error::InputError;
@@ -95,6 +96,7 @@ fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseSc
         labels.push(names);
     }
     let locked = setup.locked(at, text)?;
+    let rests = left_out(&setup.model, &setup.rests);
     for level in setup.levels {
         goals.push(level.tasks);
         labels.push(level.labels);
@@ -122,7 +124,7 @@ fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseSc
         labels,
         options: options(at, text)?,
         unused,
-        notes: setup.notes,
+        notes: setup.notes.into_iter().chain(rests).collect(),
         start: setup.start,
         model: setup.model,
     })

@@ -7,9 +7,12 @@ use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::posture_solver::Options;
 use contrapposto::statics::Load;
-use contrapposto::tasks::{Effort, PriorityLevel, Task};
+use contrapposto::tasks::{PriorityLevel, Task};
 
 use super::fatigue_choice::LAW_KEYS;
+use super::least_effort::effort_of_all;
+use super::levels::is_effort;
+use super::rest::left_out;
 use super::setup::{Setup, present};
 use super::text::ScenarioText;
 use crate::input_error::InputError;
@@ -66,7 +69,7 @@ impl RelaxScenario {
             locked: &self.locked,
             most_work: usize::MAX,
             scattered: SCATTERED_STARTS,
-            aim: Aim::Ways,
+            aim: Aim::WaysOnEitherSide,
             threads: 1,
         }
     }
@@ -100,15 +103,15 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
     let setup = Setup::read(at, text, file)?;
     setup.check_ranges(at)?;
     let locked = setup.locked(at, text)?;
-    let Setup { model, start, loads, supports, limits, levels, things, notes, .. } = setup;
+    let Setup { model, start, loads, supports, rests, limits, levels, things, mut notes, .. } = setup;
+    notes.extend(left_out(&model, &rests));
     let supports = supports?;
     let (mut goals, mut labels) = (vec![], vec![]);
     for level in levels {
         goals.push(level.tasks);
         labels.push(level.labels);
     }
-    let asks = |goal: &PriorityLevel| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
-    let effort_added = !goals.iter().any(asks);
+    let effort_added = !goals.iter().any(is_effort);
     if effort_added {
         let effort = effort_of_all(at, &model)?;
         labels.push(vec![effort.label(&model)]);
@@ -140,15 +143,4 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
         start,
         model,
     })
-}
-
-/// The effort of all muscles with known strength.
-fn effort_of_all(at: &Located, model: &Model) -> Result<Task, InputError> {
-    let effort = Effort::whole(model);
-    if effort.coordinates.is_empty() {
-        let help = "give the body strengths with an overlay; `contrapposto inspect` shows what is known".to_owned();
-        let message = "of no coordinate of this body the strength is known, so nothing is effort";
-        return Err(at.error(&["model"], message, Some(help)));
-    }
-    Ok(Task::Effort(effort))
 }

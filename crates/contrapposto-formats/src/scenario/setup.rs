@@ -4,12 +4,15 @@ use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
+use contrapposto::simulation::Rest;
 use contrapposto::statics::Load;
 use contrapposto::tasks::{Task, Thing as Obstacle};
 
 use super::ball::with_free_heels;
 use super::flat::lay_flat;
+use super::hanging_arms::add_hanging_arms;
 use super::head::check_head;
+use super::least_effort::add_least_effort;
 use super::levels::{Level, levels};
 use super::load::load;
 use super::model::body;
@@ -17,12 +20,14 @@ use super::obstacle::{boxes, limits, obstacles};
 use super::obstacle_text::ObstacleText;
 use super::place::set_places;
 use super::posture::{balls, free, free_rates, rates, set, set_result};
+use super::rest;
+use super::rest_text::RestText;
 use super::stage::{Stage, Start};
 use super::support;
 use super::task_text::SupportText;
 use super::text::ScenarioText;
 use super::upright::add_upright;
-use super::world::{drawn_things, fit_things, read_world, weights};
+use super::world::{World, drawn_things, fit_things, read_world, weights};
 use crate::input_error::InputError;
 use crate::thing::Thing;
 use crate::toml_file::{Located, shown};
@@ -39,6 +44,8 @@ pub(super) struct Setup {
     pub(super) kinematics: Kinematics,
     /// Supports with their patches. A pose needs only their segments: for it, an error of a patch is none.
     pub(super) supports: Result<Vec<Support>, InputError>,
+    /// Supports that only a run puts on their planes, numbered after the others.
+    pub(super) rests: Vec<(Support, Rest)>,
     /// Things that no part of the body passes through, by name.
     pub(super) obstacles: Vec<(String, Obstacle)>,
     /// Inequalities above all tasks.
@@ -57,45 +64,60 @@ impl Setup {
         check_head(at, text)?;
         let model = body(at, text, file)?;
         let world = read_world(at, text, &model)?;
-        let at = &at.with_aliases(world.aliases(text));
+        let (rest_texts, paths) = world.all_rests(at, text)?;
+        let before = text.support.len() + world.supports.len();
+        let at = &at.with_aliases(world.aliases(text).into_iter().chain(rest::aliases(before, &paths)).collect());
         let built_in = text.model.file.is_none();
-        let texts: Vec<&SupportText> = text.support.iter().chain(&world.supports).collect();
+        let as_supports: Vec<SupportText> = rest_texts.iter().map(RestText::as_support).collect();
+        let texts: Vec<&SupportText> = text.support.iter().chain(&world.supports).chain(&as_supports).collect();
         let (model, texts) = with_free_heels(at, (model, built_in), &texts)?;
-        let mut start = model.default_posture();
-        world.seed(&model, &mut start);
-        set(at, &model, &["posture"], &text.posture, &mut start)?;
-        set_result(at, &model, &text.start_from, &mut start)?;
-        start.displace(&model, &vec![0.0; model.rates().len()]);
-        let mut start = Start::new(at, &model, start)?;
+        let mut start = Start::new(at, &model, start_as_written(at, text, &world, &model)?)?;
         let load = |(i, text): (usize, _)| load(at, &model, &["load", &i.to_string()], text);
         let mut loads = text.load.iter().enumerate().map(load).collect::<Result<Vec<Load>, _>>()?;
         loads.extend(world.loads.iter().cloned());
         let texts: Vec<&SupportText> = texts.iter().collect();
-        let standing = support::segments(at, &model, &texts)?;
+        let mut standing = support::segments(at, &model, &texts)?;
+        let mut rests = vec![];
         let mut notes = vec![];
         let mut supports = match support::resting(at, built_in, &model, (&texts, &standing)) {
-            Ok(resting) => {
+            Ok(mut resting) => {
+                rests = rest::rests(at, &model, (&rest_texts, before), resting.split_off(before))?;
                 let free = free_rates(at, &model, text)?;
                 fit_things(at, &model, &free, &mut start, &resting, (&world, text), &mut notes)?;
                 Ok(lay_flat(at, &model, &free, &mut start, resting, &mut notes)?)
             }
             Err(error) => Err(error),
         };
+        let resting = standing.split_off(before);
         let Start { posture: start, kinematics } = start;
         if let Ok(supports) = &mut supports {
-            set_places(at, (&model, &kinematics), &texts, supports)?;
+            set_places(at, (&model, &kinematics), &texts[..before], supports)?;
         }
         let patches = supports.as_ref().map_or(&[][..], Vec::as_slice);
         let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: &standing, patches };
         let mut levels: Vec<Level> = world.levels(&stage).into_iter().chain(levels(&stage, &text.task)?).collect();
-        notes.extend(add_upright(&stage, text, &mut levels)?.map(str::to_owned));
+        rest::check_free(at, &model, &rests, &levels)?;
+        notes.extend(add_tasks(&stage, text, (&loads, &resting), &mut levels)?);
         notes.extend(far_targets(&stage, &levels));
         let texts: Vec<&ObstacleText> = text.obstacle.iter().chain(&world.obstacles).collect();
         let obstacles = obstacles(at, &texts)?;
         let limits = limits(at, text, &obstacles, (&model, &standing), &kinematics)?;
         let longhand = weights(&model, &loads[..text.load.len()]);
         let things = boxes(&obstacles).chain(drawn_things(&world, &stage)).chain(longhand).collect();
-        Ok(Self { obstacles, loads, standing, supports, limits, levels, things, notes, kinematics, start, model })
+        Ok(Self {
+            obstacles,
+            loads,
+            standing,
+            supports,
+            rests,
+            limits,
+            levels,
+            things,
+            notes,
+            kinematics,
+            start,
+            model,
+        })
     }
 
     /// Level of each task of the file, and its place within the level.
@@ -135,6 +157,30 @@ impl Setup {
         locked.dedup();
         Ok(locked)
     }
+}
+
+/// Adds the tasks that a file leaves out and its body has all the same; gives a sentence on each.
+fn add_tasks(
+    stage: &Stage<'_>,
+    text: &ScenarioText,
+    (loads, resting): (&[Load], &[usize]),
+    levels: &mut Vec<Level>,
+) -> Result<Vec<String>, InputError> {
+    // The other two find their places above the task of effort.
+    let effort = add_least_effort(stage, text, levels)?;
+    let upright = add_upright(stage, text, levels)?;
+    let arms = add_hanging_arms(stage, text, (loads, resting), levels)?;
+    Ok([upright, arms, effort].into_iter().flatten().map(str::to_owned).collect())
+}
+
+/// The start before patches lie on their surfaces: the seeds of things, and what the file says.
+fn start_as_written(at: &Located, text: &ScenarioText, world: &World, model: &Model) -> Result<Posture, InputError> {
+    let mut start = model.default_posture();
+    world.seed(model, &mut start);
+    set(at, model, &["posture"], &text.posture, &mut start)?;
+    set_result(at, model, &text.start_from, &mut start)?;
+    start.displace(model, &vec![0.0; model.rates().len()]);
+    Ok(start)
 }
 
 /// Farthest place from the body that a person means, m (assumed).

@@ -1,10 +1,11 @@
 //! Reads a scenario for `contrapposto simulate`: a checked experiment over time.
 
+use contrapposto::contact::Support;
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::joint_torques::MuscleShareError;
 use contrapposto::model::Model;
 use contrapposto::simulation::{
-    ReliefSettings, RunSettings, Scenario, ScenarioError, Setting, StrategySettings, Tables, TaskSettings,
+    Event, ReliefSettings, Rest, RunSettings, Scenario, ScenarioError, Setting, StrategySettings, Tables, TaskSettings,
 };
 
 use super::error_keys::scenario_path;
@@ -12,8 +13,9 @@ use super::events::{change_strategies, check_events_happen, events};
 use super::fatigue_text::{FatigueText, TiresText};
 use super::names::coordinate;
 use super::posture::free;
+use super::relief_text::{ReliefText, TablesText};
 use super::setup::Setup;
-use super::text::{ReliefText, RunText, ScenarioText, StrategyText, TablesText};
+use super::text::{RunText, ScenarioText, StrategyText};
 use crate::input_error::InputError;
 use crate::thing::Thing;
 use crate::tissue::ScenarioMuscles;
@@ -86,8 +88,10 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Ru
     let (strategy, run) = tables_of_a_run(at, text)?;
     setup.check_ranges(at)?;
     let places = setup.places();
-    let Setup { model, start, loads, supports, limits, levels, things, notes, .. } = setup;
-    let supports = supports?;
+    let Setup { model, start, loads, supports, rests, limits, levels, mut things, notes, .. } = setup;
+    let mut supports = supports?;
+    let (resting, rests): (Vec<Support>, Vec<Rest>) = rests.into_iter().unzip();
+    supports.extend(resting);
     let tasks: Vec<TaskSettings> =
         levels.into_iter().map(|level| TaskSettings { goal: level.tasks, above_relief: level.above_relief }).collect();
     let whole = !supports.is_empty() || !tasks.is_empty();
@@ -107,6 +111,7 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Ru
         free,
         loads,
         supports,
+        rests,
         limits,
         tasks,
         events,
@@ -126,7 +131,16 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Ru
     };
     scenario.check().map_err(|error| at.error(scenario_path(&error), in_units_of_file(&error, text, run), None))?;
     check_events_happen(at, text, &scenario.run)?;
+    things.iter_mut().for_each(|thing| thing.until = put_down(&scenario.events, thing));
     Ok(RunScenario { scenario, things, notes, by_muscle: by.map(|by| by == TiresText::Muscle) })
+}
+
+/// The time of the first event from which on nothing loads the segment that carries a thing.
+fn put_down(events: &[Event], thing: &Thing) -> Option<f64> {
+    let segment = thing.segment?;
+    let unloads =
+        |event: &&Event| event.loads.as_ref().is_some_and(|loads| loads.iter().all(|load| load.segment != segment));
+    events.iter().find(unloads).map(|event| event.time)
 }
 
 /// The tables that a run needs; a table that only a pose takes is refused.

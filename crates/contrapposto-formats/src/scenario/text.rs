@@ -8,6 +8,8 @@ use serde::Deserialize;
 
 use super::fatigue_text::FatigueText;
 use super::obstacle_text::ObstacleText;
+use super::relief_text::ReliefText;
+use super::rest_text::RestText;
 use super::sharing::SharingText;
 use super::spread::{PassiveTable, StrengthText};
 use super::task_text::{SolverText, SupportText, TaskText};
@@ -49,6 +51,9 @@ pub(crate) struct ScenarioText {
     /// The supports, which carry weight.
     #[serde(default)]
     pub(crate) support: Vec<SupportText>,
+    /// Places where a hand may be put when a muscle group is tired (`simulate`).
+    #[serde(default)]
+    pub(crate) rest: Vec<RestText>,
     /// Boxes held in both hands.
     #[serde(default, rename = "box")]
     pub(crate) boxes: Vec<BoxText>,
@@ -86,6 +91,11 @@ pub(crate) struct ScenarioText {
     /// The head's up axis points up, just above effort. When left out: `true` for the built-in adult on supports, where no task names
     /// head or trunk.
     pub(crate) upright: Option<bool>,
+    /// Arms without work hang, just above effort. When left out: `true` for the built-in adult on supports.
+    pub(crate) arms_hang: Option<bool>,
+    /// Little effort of all muscles is the last task. When left out: `true` in a run of the built-in adult on supports without a task of
+    /// kind `effort`.
+    pub(crate) least_effort: Option<bool>,
     /// Settings of the solver (`pose`).
     pub(crate) solver: Option<SolverText>,
     /// The kind of relief that is wanted; `simulate` needs it.
@@ -334,45 +344,6 @@ impl From<StrategyKindText> for Strategy {
             StrategyKindText::Passive => Self::Passive,
         }
     }
-}
-
-/// Settings of relief.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct ReliefText {
-    /// Share of the way to the goal in one step (beta), above 0, below 1.
-    pub(crate) step_gain: f64,
-    /// Greatest step, deg; 2 when left out, half a degree for a body with supports or tasks.
-    pub(crate) max_step_deg: Option<f64>,
-    /// Active torque that counts as none (eps), N m; 0.05 when left out, 0.5 for a body with supports or tasks.
-    pub(crate) torque_tolerance_nm: Option<f64>,
-    /// Relief may raise the effort of a body with supports or tasks to so many times the effort before all present reliefs, at
-    /// least 1.
-    pub(crate) effort_factor: f64,
-    /// `total`, or `literal` for the paper's tables as printed.
-    pub(crate) tables: TablesText,
-}
-
-impl Default for ReliefText {
-    fn default() -> Self {
-        Self {
-            step_gain: 0.3,
-            max_step_deg: None,
-            torque_tolerance_nm: None,
-            effort_factor: 1.25,
-            tables: TablesText::Total,
-        }
-    }
-}
-
-/// Reading of the paper's Tables 1 and 2.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum TablesText {
-    /// Gaps closed, an accepted strategy kept.
-    Total,
-    /// As printed.
-    Literal,
 }
 
 /// Duration and time step of a run.

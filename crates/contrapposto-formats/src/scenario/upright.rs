@@ -14,7 +14,7 @@ use contrapposto::model::Model;
 use contrapposto::tasks::{Bounds, Carried, Component, LookAt, LookAtGoal, Task};
 use nalgebra::{Unit, UnitVector3, Vector3};
 
-use super::levels::Level;
+use super::levels::{Level, add_above_effort};
 use super::posture::free;
 use super::stage::Stage;
 use super::text::ScenarioText;
@@ -58,10 +58,7 @@ pub(super) fn add_upright(
             None => return Ok(None),
         },
     };
-    let effort = |level: &Level| level.tasks.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
-    let place = levels.iter().position(effort).unwrap_or(levels.len());
-    let labels = vec![task.label(model)];
-    levels.insert(place, Level { tasks: task.into(), labels, above_relief: false, added: true });
+    add_above_effort(levels, task.into(), model);
     Ok(note)
 }
 

@@ -1,6 +1,4 @@
 //! Bodies that exert a force with the right hand, shared by the test and the benchmark of capacities.
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used)] // each uses a part
-
 use contrapposto::capacity::{Capacity, Demand, Situation, Station};
 use contrapposto::contact::{Place, Support};
 use contrapposto::joint_torques::{JointTorques, Quantities};

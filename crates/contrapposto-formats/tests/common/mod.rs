@@ -1,8 +1,14 @@
-//! Shared by the readers' tests: files, and forward kinematics of a [`ModelIr`] written from its description alone.
-#![allow(dead_code, unreachable_pub, unused_imports, reason = "each test uses a part")]
-#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "tests print their figures, and may stop")]
+//! Shared by the tests of this crate: files, mutants and their times, and forward kinematics of a [`ModelIr`] from its description alone.
 
-mod shared;
+pub mod c3d;
+#[allow(dead_code, reason = "the benchmark of capacities uses the rest")]
+pub mod hands;
+pub mod muscle_reference;
+pub mod muscled_arm;
+pub mod peer;
+pub mod runs;
+pub mod samples;
+pub mod shared;
 pub mod toml;
 
 pub use self::shared::shared;
@@ -10,6 +16,7 @@ use contrapposto_formats::InputError;
 use contrapposto_formats::model_ir::{Drive, ModelIr, MotionIr};
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use std::path::Path;
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Everything that a reader says about what it refuses. Printing it must not panic either.
@@ -17,6 +24,23 @@ pub fn complaint(error: &InputError) -> String {
     let mut text = String::new();
     miette::NarratableReportHandler::new().render_report(&mut text, error).unwrap();
     text
+}
+
+/// The results of `work` for each item, in their order, computed on all cores.
+pub fn on_all_cores<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
+    let (left, done) = (Mutex::new(items.into_iter().enumerate()), Mutex::new(vec![]));
+    let next = || left.lock().unwrap().next();
+    let until_none_is_left = || {
+        while let Some((i, item)) = next() {
+            let made = work(item);
+            done.lock().unwrap().push((i, made));
+        }
+    };
+    let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
+    std::thread::scope(|scope| (0..cores).for_each(|_| drop(scope.spawn(until_none_is_left))));
+    let mut done = done.into_inner().unwrap();
+    done.sort_by_key(|(i, _)| *i);
+    done.into_iter().map(|(_, made)| made).collect()
 }
 
 pub fn here() -> &'static Path {
@@ -118,9 +142,9 @@ pub fn hammer_mutants(
     let (start, before) = (Instant::now(), peak_memory());
     for i in 0..count {
         let text = mutant(i, &mut state);
-        let begin = Instant::now();
+        let begin = processor_time();
         accepted += usize::from(read(&text));
-        slowest = slowest.max(begin.elapsed());
+        slowest = slowest.max(processor_time() - begin);
     }
     let grown = peak_memory().saturating_sub(before) >> 10;
     println!(
@@ -130,6 +154,14 @@ pub fn hammer_mutants(
     assert!(slowest < Duration::from_secs(1), "{format}: {slowest:?}");
     assert!(asked.is_none() || grown < 64, "{format}: {grown} MiB"); // usually other tests run beside
     assert!(accepted > count / 50 && accepted < count, "{format}: {accepted} of {count} accepted");
+}
+
+/// Time of this thread on the processor, where the system tells it: other tests and programs do not count.
+pub fn processor_time() -> Duration {
+    static START: OnceLock<Instant> = OnceLock::new();
+    let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let on_processor = statistics.split(' ').next().and_then(|ns| ns.parse().ok());
+    on_processor.map_or_else(|| START.get_or_init(Instant::now).elapsed(), Duration::from_nanos)
 }
 
 /// Largest memory of the process so far, KiB; 0 where the system does not tell.
@@ -144,20 +176,14 @@ fn peak_memory() -> usize {
 /// programs do not count. Some systems count that time in steps of 10 ms, so that each size is worked on for a tenth of a
 /// second at least. Machines are busy all the same: one of ten measurements must do.
 pub fn assert_linear<T>(name: &str, size: usize, make: impl Fn(usize) -> T, work: impl Fn(&T)) {
-    let start = Instant::now();
-    let now = || {
-        let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-        let on_processor = statistics.split(' ').next().and_then(|ns| ns.parse().ok());
-        on_processor.map_or_else(|| start.elapsed(), Duration::from_nanos)
-    };
     let time = |input: &T| {
-        let (begin, busy) = (Instant::now(), now());
+        let (begin, busy) = (Instant::now(), processor_time());
         let mut repeats = 0.0;
         while begin.elapsed() < Duration::from_millis(100) {
             work(input);
             repeats += 1.0;
         }
-        (now() - busy).as_secs_f64() / repeats
+        (processor_time() - busy).as_secs_f64() / repeats
     };
     let (small, large) = (make(size), make(8 * size));
     let mut best = f64::INFINITY;

@@ -1,8 +1,5 @@
 //! Reads OpenSim's numbers of the muscles of a model, and compares ours with them.
 
-#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "helpers of tests")]
-#![allow(unreachable_pub, dead_code, reason = "tests include this file as a module")]
-
 use std::io::Read;
 use std::path::{Path, PathBuf};
 

@@ -1,12 +1,5 @@
 //! A forearm on muscles, and scenarios of bodies with muscles in use.
 
-#![allow(
-    dead_code,
-    unreachable_pub,
-    clippy::unwrap_used,
-    reason = "tests include this file as a module, each uses a part"
-)]
-
 use contrapposto::simulation::Scenario;
 use contrapposto_formats::read_run;
 use contrapposto_formats::tissue::{MuscleUse, Person, SourcedModel};

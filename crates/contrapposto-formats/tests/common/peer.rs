@@ -1,9 +1,5 @@
 //! The published peer problem: `ik_targets_human48.json` beside the project, a 48-joint human on a free root, both feet placed,
 //! the centre of mass over them, the right hand on a target, the head upright, the rest posture: five strict levels.
-#![allow(dead_code, unreachable_pub, reason = "each user uses a part")]
-
-#[path = "shared.rs"]
-mod files;
 
 use contrapposto::kinematics::{self, Kinematics};
 use contrapposto::model::{Model, Placement};
@@ -19,7 +15,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64;
 use serde_json::Value;
 
-use self::files::shared;
+use super::shared::shared;
 
 pub struct Peer {
     pub model: Model,

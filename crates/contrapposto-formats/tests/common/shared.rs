@@ -1,7 +1,5 @@
 //! Files of `../shared`: published models and numbers of other tools that are not copied into the project.
 
-#![allow(unreachable_pub, reason = "tests and benchmarks include this file as a module")]
-
 use std::path::PathBuf;
 
 /// Path of a file or folder of `../shared`. Panics without it: tests that need it are `#[ignore = "needs ../shared: ..."]`.

@@ -37,7 +37,7 @@ pub use cycles::{Curve, CycleGrid, CycleOrigin, Cycles, PERCENTS};
 pub use error::AssessError;
 use evaluation::Evaluation;
 use groups::Groups;
-pub use range::{NEARLY_ALL, share_outside};
+pub use range::{NEARLY_ALL, is_in_doubt, share_outside};
 pub use result::{
     AngleInDoubt, Assessment, GroupAssessment, Instant, Peak, PeakKind, PeakTorques, Proposal, RepeatedGroup,
 };
@@ -114,16 +114,17 @@ pub fn assess(
     Ok(found)
 }
 
-/// The share of instants in which a coordinate lies outside of its range, where these are nearly all.
+/// The share of instants in which a coordinate lies outside of its range by more than the error of recorded angles, where that puts its sign,
+/// unit or zero in doubt.
 fn out_of_range(model: &Model, motion: &[(f64, Posture)], i: usize) -> Option<f64> {
     let coordinate = &model.coordinates()[i];
     if coordinate.kind == CoordinateKind::Quaternion || model.is_dependent(i) {
         return None;
     }
-    let values = motion.iter().filter_map(|(_, posture)| posture.values().get(i).copied());
+    let values: Vec<f64> = motion.iter().filter_map(|(_, posture)| posture.values().get(i).copied()).collect();
     let error = if coordinate.kind == CoordinateKind::Rotation { ANGLE_ERROR } else { 0.0 };
-    let share = share_outside(values, (coordinate.range.0 - error, coordinate.range.1 + error));
-    (share >= NEARLY_ALL).then_some(share)
+    let range = (coordinate.range.0 - error, coordinate.range.1 + error);
+    is_in_doubt(&values, range).then(|| share_outside(values, range))
 }
 
 impl Assessment {

@@ -2,13 +2,18 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use nalgebra::Vector3;
+use nalgebra::{Unit, UnitVector3, Vector3};
 
 use crate::model::{LARGEST, Model, Motion};
 
 /// Faces of the pyramid that stands for the cone of friction. Its edges lie on the cone, so every force it allows holds:
 /// along each of two axes of the plane, square to each other, friction is at most `friction / sqrt(2)` times the normal force.
 pub const FACES: usize = 4;
+
+/// Smallest area of a patch that has a normal, m².
+const LEAST_AREA: f64 = 1e-6;
+/// The outer side of a patch that is nearer than this, m, to the segment's centre of mass is not known.
+const THROUGH_THE_MIDDLE: f64 = 5e-3;
 
 /// A patch of a segment that rests on a plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +60,14 @@ pub enum SupportError {
         /// The index given.
         segment: usize,
         /// Number of segments.
+        count: usize,
+    },
+    /// The rests are not the last supports, in their order.
+    #[error("rest of support number {support}; the rests are the last of the {count} supports, in their order")]
+    Rest {
+        /// The number given.
+        support: usize,
+        /// Number of supports.
         count: usize,
     },
     /// A number has no meaning.
@@ -105,6 +118,18 @@ impl Support {
     /// The middle of the patch, segment frame, m.
     pub fn middle(&self) -> Vector3<f64> {
         self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64
+    }
+
+    /// Normal of the patch toward the body, segment frame: that of its largest triangle, on the side of the segment's centre of mass. `None` for a
+    /// point or a line, and where the centre of mass is too near to tell.
+    pub fn inward(&self, model: &Model) -> Option<UnitVector3<f64>> {
+        let from_first = |corner: &Vector3<f64>| corner - self.corners[0];
+        let triangles =
+            self.corners.iter().flat_map(|a| self.corners.iter().map(move |b| from_first(a).cross(&from_first(b))));
+        let normal = triangles.max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+        let normal = Unit::try_new(normal, LEAST_AREA)?;
+        let depth = normal.dot(&(model.segments()[self.segment].center_of_mass - self.middle()));
+        (depth.abs() > THROUGH_THE_MIDDLE).then(|| if depth < 0.0 { -normal } else { normal })
     }
 
     /// Normal, and two axes of the plane.

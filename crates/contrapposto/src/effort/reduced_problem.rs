@@ -108,6 +108,7 @@ impl ReducedProblem {
 
 #[cfg(test)]
 #[path = "../../tests/trees/mod.rs"]
+#[allow(dead_code, unreachable_pub, clippy::print_stdout, clippy::unwrap_used, reason = "the test uses a part")]
 mod trees;
 
 #[cfg(test)]

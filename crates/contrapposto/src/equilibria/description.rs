@@ -45,7 +45,16 @@ pub(super) fn describe(
     });
     let mut hanging: Vec<Hanging> = hanging.collect();
     hanging.sort_by(|a, b| b.passive.abs().total_cmp(&a.passive.abs()));
-    Ok(RelaxedPosture { supports: supports.collect(), stability, torques, work, hanging, starts, relaxed })
+    Ok(RelaxedPosture {
+        supports: supports.collect(),
+        stability,
+        torques,
+        work,
+        hanging,
+        starts,
+        relaxed,
+        mirrored: false,
+    })
 }
 
 /// Work of a coordinate's muscles in the posture that `engine` evaluated last.

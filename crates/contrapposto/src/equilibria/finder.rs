@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::candidate::{Candidate, Worth, keep_worth};
 use super::description::describe;
-use super::hanging_limbs::idle_segments;
+use super::mirror::Mirror;
 use super::other_places::other_places;
 use super::outcome::{Equilibria, MOST_MINIMA};
 use super::raised_limbs::LimbsWithoutTask;
@@ -157,7 +157,7 @@ impl<'a> Finder<'a> {
         if !near.is_empty() {
             before = near;
         }
-        let all_ways = matches!(self.search.aim, Aim::Ways);
+        let all_ways = matches!(self.search.aim, Aim::Ways | Aim::WaysOnEitherSide);
         let hopped = if all_ways { HOPPED_OF_ALL } else { HOPPED_TO_LEAST };
         let others = least.split_off(hopped.min(least.len()));
         self.solve_straight(Stage::Converged, least);
@@ -349,8 +349,9 @@ impl<'a> Finder<'a> {
         selected.retain(|&i| self.found[i].raised_limbs == least);
         keep_worth(&self.found, &mut selected, Worth::ANSWER);
         let raised = all - selected.len();
-        let (mut answers, engine) =
-            (DifferentWays::new(idle_segments(self.search)), self.solvers.engine(Stage::Converged));
+        let engine = self.solvers.engine(Stage::Converged);
+        let mirror = matches!(self.search.aim, Aim::WaysOnEitherSide).then(|| Mirror::of(self.search.model)).flatten();
+        let mut answers = DifferentWays::new(self.search, mirror);
         for i in selected {
             let Candidate { relaxed, starts, .. } = self.found[i].clone();
             let posture = describe(self.search, engine, relaxed, starts)?;

@@ -44,10 +44,11 @@ pub(super) fn idle_segments(search: &Search<'_>) -> Vec<bool> {
     idle
 }
 
-/// Whether a task concerns a segment of a limb.
+/// Whether a task concerns a segment of a limb. One that asks it to hang is none.
 pub(super) fn has_task(search: &Search<'_>, limb: &[usize]) -> bool {
-    let mut tasks = search.goals.iter().flat_map(|level| &level.tasks);
-    tasks.any(|task| limb.iter().any(|&segment| task.concerns(search.model, segment)))
+    let tasks = search.goals.iter().flat_map(|level| &level.tasks);
+    let mut work = tasks.filter(|task| !task.hangs(search.model));
+    work.any(|task| limb.iter().any(|&segment| task.concerns(search.model, segment)))
 }
 
 /// For the last segment with mass of every limb that moves no support: its centre of mass straight below the joint where the limb begins, as

@@ -76,6 +76,8 @@ pub struct RelaxedPosture {
     pub hanging: Vec<Hanging>,
     /// Starts that led to this posture, in words.
     pub starts: Vec<String>,
+    /// Whether the mirror image of the posture was found, too, at the same effort, and is left out ([`Aim::WaysOnEitherSide`](super::Aim::WaysOnEitherSide)).
+    pub mirrored: bool,
 }
 
 impl RelaxedPosture {

@@ -41,6 +41,8 @@ pub struct Search<'a> {
 pub enum Aim<'a> {
     /// All different ways to stand.
     Ways,
+    /// The same; of two that are mirror images of each other and take the same effort, the first ([`RelaxedPosture::mirrored`](super::RelaxedPosture::mirrored)).
+    WaysOnEitherSide,
     /// The posture of least effort. Where local minima of an earlier search of the same body are given, they are the starts, besides all goals of
     /// each strategy together.
     Least(&'a [Posture]),
@@ -50,7 +52,7 @@ impl Aim<'_> {
     /// Postures of earlier searches.
     pub(super) fn known(&self) -> &[Posture] {
         match self {
-            Self::Ways => &[],
+            Self::Ways | Self::WaysOnEitherSide => &[],
             Self::Least(known) => known,
         }
     }

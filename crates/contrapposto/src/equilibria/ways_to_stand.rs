@@ -4,10 +4,15 @@
 //! and no support carries more of the weight in one than in the other by more than a tenth. Both limits are assumed. Limbs that carry
 //! nothing and have no task do not count: an arm to the front and an arm at the side are one way to stand, and the first of them is the answer. A posture in
 //! which a group would need more than its strength is no way to stand where another posture needs less.
+//!
+//! The same with left and right exchanged, at the same effort, is one way to stand where that is asked for.
 
 use nalgebra::Vector3;
 
+use super::hanging_limbs::idle_segments;
+use super::mirror::Mirror;
 use super::outcome::{Carried, RelaxedPosture, Work};
+use super::search::Search;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 
@@ -15,6 +20,9 @@ use crate::model::Model;
 const SAME_JOINT: f64 = 0.05;
 /// Difference between the shares of the weight on a support up to which two postures are one way to stand.
 const SAME_SHARE: f64 = 0.1;
+
+/// Difference between the efforts of two mirror images, as a share: both sides of a symmetric task take the same, but for where steps end.
+const SAME_EFFORT: f64 = 0.01;
 
 /// Most postures of an answer.
 const MOST_POSTURES: usize = 5;
@@ -24,6 +32,10 @@ const MOST_POSTURES: usize = 5;
 pub(super) struct DifferentWays {
     /// By segment: its joint does not count.
     idle: Vec<bool>,
+    /// Segments of the supports.
+    supports: Vec<usize>,
+    /// Set where mirror images are one way to stand.
+    mirror: Option<Mirror>,
     pub(super) postures: Vec<RelaxedPosture>,
     /// Postures left out.
     pub(super) alike: usize,
@@ -31,16 +43,26 @@ pub(super) struct DifferentWays {
 }
 
 impl DifferentWays {
-    /// `idle`: by segment, whether the place of its joint does not count.
-    pub(super) fn new(idle: Vec<bool>) -> Self {
-        Self { idle, postures: vec![], alike: 0, ways: vec![] }
+    /// `mirror`: where mirror images are one way to stand.
+    pub(super) fn new(search: &Search<'_>, mirror: Option<Mirror>) -> Self {
+        let supports = search.supports.iter().map(|support| support.segment).collect();
+        Self { idle: idle_segments(search), supports, mirror, postures: vec![], alike: 0, ways: vec![] }
     }
 
     /// Takes the next posture, of more effort than those before; `kinematics` are those of the posture.
     pub(super) fn take(&mut self, model: &Model, kinematics: &Kinematics, posture: RelaxedPosture) {
-        let way = WayToStand::of(model, kinematics, &posture.supports, &self.idle);
+        let way = WayToStand::of(model, kinematics, &posture.supports);
         let held = posture.work.iter().all(|work: &Work| work.relative_load() <= 1.0);
-        let new = self.postures.len() < MOST_POSTURES && held && !self.ways.iter().any(|known| known.is_like(&way));
+        let is_known = |way: &WayToStand| self.ways.iter().position(|known| known.is_like(way, &self.idle));
+        let effort = posture.relaxed.effort;
+        let is_near = |known: &usize| effort <= (1.0 + SAME_EFFORT) * self.postures[*known].relaxed.effort;
+        let image = self.mirror.as_ref().and_then(|mirror| way.image(mirror, &self.supports));
+        let mirrored = image.and_then(|image| is_known(&image)).filter(is_near);
+        let known = is_known(&way);
+        if let (None, Some(known)) = (known, mirrored) {
+            self.postures[known].mirrored = true;
+        }
+        let new = self.postures.len() < MOST_POSTURES && held && known.is_none() && mirrored.is_none();
         if self.postures.is_empty() || new {
             self.postures.push(posture);
             self.ways.push(way);
@@ -50,7 +72,7 @@ impl DifferentWays {
     }
 }
 
-/// The places of the joints that count, and the shares of all supports.
+/// The places of all joints, ground, m, and the shares of all supports.
 #[derive(Clone, Debug)]
 struct WayToStand {
     joints: Vec<Vector3<f64>>,
@@ -58,17 +80,32 @@ struct WayToStand {
 }
 
 impl WayToStand {
-    fn of(model: &Model, kinematics: &Kinematics, supports: &[Carried], idle: &[bool]) -> Self {
-        let segments = (0..model.segments().len()).filter(|&segment| !idle[segment]);
+    fn of(model: &Model, kinematics: &Kinematics, supports: &[Carried]) -> Self {
+        let segments = 0..model.segments().len();
         Self {
             joints: segments.map(|segment| kinematics.placement(model, segment).translation.vector).collect(),
             shares: supports.iter().map(|support| support.share).collect(),
         }
     }
 
-    fn is_like(&self, other: &Self) -> bool {
+    /// Left and right exchanged; `None` where a support has no partner. `supports`: their segments.
+    fn image(&self, mirror: &Mirror, supports: &[usize]) -> Option<Self> {
+        let mut image = self.clone();
+        for (segment, joint) in self.joints.iter().enumerate() {
+            image.joints[mirror.segment(segment)] = mirror.vector(*joint);
+        }
+        for (support, share) in supports.iter().zip(&self.shares) {
+            let partner = supports.iter().position(|other| *other == mirror.segment(*support))?;
+            image.shares[partner] = *share;
+        }
+        Some(image)
+    }
+
+    /// `idle`: by segment, whether its joint does not count.
+    fn is_like(&self, other: &Self, idle: &[bool]) -> bool {
         let far = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (a - b).norm() > SAME_JOINT;
         let shifted = |(a, b): (&f64, &f64)| (a - b).abs() > SAME_SHARE;
-        !self.joints.iter().zip(&other.joints).any(far) && !self.shares.iter().zip(&other.shares).any(shifted)
+        let mut joints = self.joints.iter().zip(&other.joints).zip(idle);
+        !joints.any(|(pair, idle)| !idle && far(pair)) && !self.shares.iter().zip(&other.shares).any(shifted)
     }
 }

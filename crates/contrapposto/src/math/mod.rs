@@ -1,6 +1,6 @@
 //! Numerical ground floor: root finding, monotone curves, functions of one variable, filters and splines of samples,
-//! angles of a rotation, closest points, linear programs, a sequence of
-//! random numbers. Knows nothing of bodies.
+//! angles of a rotation, closest points, linear programs, the normal
+//! distribution, a sequence of random numbers. Knows nothing of bodies.
 
 mod closest_points;
 mod dichotomy;
@@ -10,6 +10,7 @@ mod jet;
 mod linear_program;
 mod lowpass;
 mod monotone_cubic;
+pub mod normal;
 mod quintic_spline;
 mod random;
 mod swing_twist;

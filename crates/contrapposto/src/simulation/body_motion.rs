@@ -41,10 +41,14 @@ const HALF_SPACE_TOLERANCE: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(super) struct BodyMotion<'a> {
     pub(super) scenario: &'a Scenario,
-    /// Supports at the places where the body stands: none is free.
+    /// Numbers of the scenario's supports that are in use, ascending.
+    pub(super) in_use: Vec<usize>,
+    /// The supports in use at the places where the body stands: none is free.
     pub(super) supports: Vec<Support>,
+    /// Inequalities above all tasks while these supports are in use.
+    pub(super) limits: Vec<Task>,
     pub(super) engine: Engine<'a>,
-    /// The support that is in the air, and an engine without it.
+    /// The number of a support in use that is in the air, and an engine without it.
     pub(super) lifted: Option<(usize, Engine<'a>)>,
     /// The body, with the strength of its present posture.
     pub(super) model: SharedModel<'a>,
@@ -73,15 +77,17 @@ struct Slope {
 }
 
 impl<'a> BodyMotion<'a> {
-    /// The body on its supports as they are in the posture `placed_at`.
+    /// The body on its supports `in_use` as they are in the posture `placed_at`.
     pub(super) fn new(
         scenario: &'a Scenario,
         model: SharedModel<'a>,
         placed_at: &Posture,
+        in_use: &[usize],
     ) -> Result<Self, ScenarioError> {
         // A foot that carries does not slide.
         let stays = |support: &Support| Support { place: Place::Fixed, ..support.clone() };
-        let supports: Vec<Support> = scenario.supports.iter().map(stays).collect();
+        let supports: Vec<Support> = in_use.iter().map(|&number| stays(&scenario.supports[number])).collect();
+        let limits = scenario.limits_with(in_use);
         let (above, below): (Vec<_>, Vec<_>) = (0..scenario.tasks.len()).partition(|&i| scenario.tasks[i].above_relief);
         let level = |i: &usize| scenario.tasks[*i].goal.clone();
         let reliefs = std::iter::repeat_n(PriorityLevel::default(), MOST_RELIEFS);
@@ -93,8 +99,10 @@ impl<'a> BodyMotion<'a> {
         let options = Options { reject_steps: false, max_step, local_minima: 0, ..Options::least_effort() };
         Ok(Self {
             scenario,
-            engine: engine((scenario, model.clone()), placed_at, &supports, levels, options)?,
+            engine: engine((scenario, model.clone()), placed_at, (&supports, &limits), levels, options)?,
+            in_use: in_use.to_vec(),
             supports,
+            limits,
             lifted: None,
             above: above.len(),
             task_levels,
@@ -115,11 +123,6 @@ impl<'a> BodyMotion<'a> {
 
     pub(super) fn scenario(&self) -> &'a Scenario {
         self.scenario
-    }
-
-    /// The supports where they are now: none is free.
-    pub(super) fn supports(&self) -> &[Support] {
-        &self.supports
     }
 
     pub(super) fn loads(&self) -> &[Load] {
@@ -303,10 +306,11 @@ impl<'a> BodyMotion<'a> {
     pub(super) fn write_standing(&self, standing: &mut Standing) {
         let contact = self.contact();
         standing.contacts.clear();
-        let lifted = self.lifted.as_ref().map(|(support, _)| *support);
-        standing.contacts.extend((0..contact.supports().len()).map(|support| self.contact_of(support)));
-        if let Some(support) = lifted {
-            standing.contacts.insert(support, Contact::default());
+        standing.contacts.resize(self.scenario.supports.len(), Contact::default());
+        let lifted = self.lifted.as_ref().map(|(number, _)| *number);
+        let carrying = self.in_use.iter().filter(|number| Some(**number) != lifted);
+        for (support, number) in (0..contact.supports().len()).zip(carrying) {
+            standing.contacts[*number] = self.contact_of(support);
         }
         standing.errors.clear();
         standing.errors.extend(self.task_levels.iter().map(|&level| self.engine.error(level)));
@@ -338,12 +342,12 @@ pub(super) fn is_effort(level: &PriorityLevel) -> bool {
 pub(super) fn engine<'a>(
     (scenario, model): (&'a Scenario, SharedModel<'a>),
     placed_at: &Posture,
-    supports: &[Support],
+    (supports, limits): (&[Support], &[Task]),
     levels: Vec<PriorityLevel>,
     options: Options,
 ) -> Result<Engine<'a>, ScenarioError> {
     let mut engine = Engine::with_supports(model, placed_at, supports.to_vec(), levels, &scenario.loads, options)?;
     scenario.locked_rates().for_each(|rate| engine.lock(rate));
-    scenario.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
+    limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
     Ok(engine)
 }

@@ -7,8 +7,10 @@ use super::body_motion::{BodyMotion, engine, is_effort};
 use super::easiest::{
     Budget, MOST_SLIP, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference, search,
 };
+use super::offer::Offer;
 use super::path::{Path, Planner};
-use crate::contact::{Balance, Support};
+use super::sample::StepKind;
+use crate::contact::{Balance, Place, Support};
 use crate::equilibria::{Aim, SCATTERED_STARTS};
 use crate::joint_torques::JointTorquesError;
 use crate::kinematics::Kinematics;
@@ -30,7 +32,13 @@ impl BodyMotion<'_> {
         // One engine at a time: with many tasks they are large.
         let solve = |from: &Posture| -> Result<SolvedPosture, ScenarioError> {
             let levels = self.levels().cloned().collect();
-            let mut nearest = engine((scenario, self.model.clone()), &scenario.start, &self.supports, levels, options)?;
+            let mut nearest = engine(
+                (scenario, self.model.clone()),
+                &scenario.start,
+                (&self.supports, &self.limits),
+                levels,
+                options,
+            )?;
             Ok(nearest.solve(from)?)
         };
         let mut solved = solve(&scenario.start)?;
@@ -73,7 +81,8 @@ impl BodyMotion<'_> {
         // An eighth of the usual work (assumed): a scenario that cannot stand is answered within a second.
         let work = SEARCH_BUDGET_OF_STEP / 8;
         let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: false };
-        let Searched { found, minima, work, cut } = search(self.scenario, now, &self.supports, &locked, budget).ok()?;
+        let Searched { found, minima, work, cut } =
+            search(self.scenario, now, (&self.supports, &self.limits), &locked, budget).ok()?;
         let stands = found.into_iter().find(|found| found.relaxed.slip.length() <= MOST_SLIP)?;
         Some(Searched { found: stands.relaxed.posture, minima, work, cut })
     }
@@ -98,7 +107,7 @@ impl BodyMotion<'_> {
         at_start.update(&self.model, &scenario.start).map_err(JointTorquesError::from)?;
         let places = self.supports.iter().map(|support| held_place(support, &self.model, &at_start)).collect();
         let level = |tasks: Vec<Task>, hard: bool| PriorityLevel { tasks, hard, ..PriorityLevel::default() };
-        let fixed = [level(places, true), level(scenario.limits.clone(), false)];
+        let fixed = [level(places, true), level(self.limits.clone(), false)];
         let tasks = self.levels().take_while(|level| !is_effort(level)).cloned();
         let levels = fixed.into_iter().filter(|level| !level.tasks.is_empty()).chain(tasks).collect();
         let options = Options::inverse_kinematics();
@@ -125,55 +134,70 @@ impl BodyMotion<'_> {
         let loads = self.engine.loads();
         let now = Now { model: &self.model, posture, levels: &levels, loads, effort, aim: Aim::Least(known) };
         // A search that finds nothing leaves the body as it is.
-        Ok(easiest(self.scenario, now, &errors, &self.supports, budget).unwrap_or_default())
+        Ok(easiest(self.scenario, now, &errors, (&self.supports, &self.limits), budget).unwrap_or_default())
     }
 
-    /// The way to `to`, where support number `lifted`, if any, has another place; `None` where there is none, where a law gives no
-    /// numbers on it, or where `budget` of work, which becomes less, shows none.
-    pub(super) fn way(&self, from: &Posture, to: &Posture, lifted: Option<usize>, budget: &mut usize) -> Option<Path> {
+    /// The way to `to`, with a change of a support, if any; `None` where there is none, where a law gives no numbers on it, or where
+    /// `budget` of work, which becomes less, shows none.
+    pub(super) fn way(&self, from: &Posture, to: &Posture, change: Option<Offer>, budget: &mut usize) -> Option<Path> {
         let levels: Vec<PriorityLevel> = self.levels().take_while(|level| !is_effort(level)).cloned().collect();
         // A step may leave what reliefs ask for at the old place.
-        let keeps = |level: &&PriorityLevel| lifted.is_none() || level.half_spaces.is_empty();
+        let keeps = |level: &&PriorityLevel| change.is_none() || level.half_spaces.is_empty();
         let levels: Vec<PriorityLevel> = levels.iter().filter(keeps).cloned().collect();
-        let (supports, loads) = (&self.supports[..], self.engine.loads());
+        let (numbers, supports) = self.with_change(change);
         let planner = Planner {
             scenario: self.scenario,
             model: &self.model,
-            supports,
+            supports: &supports,
+            numbers: &numbers,
+            limits: &self.scenario.limits_with(&numbers),
             levels: &levels,
-            loads,
+            loads: self.engine.loads(),
             left: Cell::new(*budget),
         };
-        let planned = match lifted {
-            Some(support) => planner.step(from, to, support),
+        let planned = match change {
+            Some(offer) => planner.step(from, to, offer),
             None => planner.way(from, to),
         };
         *budget = planner.left.get();
         planned.ok().flatten()
     }
 
-    /// The support that is in the air from now on.
+    /// Numbers and supports in use, and the one that is put down.
+    pub(super) fn with_change(&self, change: Option<Offer>) -> (Vec<usize>, Vec<Support>) {
+        let (mut numbers, mut supports) = (self.in_use.clone(), self.supports.clone());
+        if let Some(Offer { number, kind: StepKind::PutDown }) = change {
+            let place = numbers.partition_point(|known| *known < number);
+            numbers.insert(place, number);
+            let support = Support { place: Place::Fixed, ..self.scenario.supports[number].clone() };
+            supports.insert(place, support);
+        }
+        (numbers, supports)
+    }
+
+    /// The number of the support that is in the air from now on.
     pub(super) fn lift(&mut self, support: Option<usize>) -> Result<(), ScenarioError> {
-        let Some(lifted) = support else {
+        let Some(lifted) = support.filter(|lifted| self.in_use.contains(lifted)) else {
             self.lifted = None;
             return Ok(());
         };
         if self.lifted.as_ref().is_none_or(|(known, _)| *known != lifted) {
-            let others = self.supports.iter().enumerate().filter(|(i, _)| *i != lifted);
+            let others = self.in_use.iter().zip(&self.supports).filter(|(number, _)| **number != lifted);
             let others: Vec<Support> = others.map(|(_, support)| support.clone()).collect();
             let levels = self.engine.levels().to_vec();
             let options = Options::least_effort();
-            let mut engine = engine((self.scenario, self.model.clone()), &self.placed_at, &others, levels, options)?;
+            let mut engine =
+                engine((self.scenario, self.model.clone()), &self.placed_at, (&others, &self.limits), levels, options)?;
             engine.set_loads(self.engine.loads())?;
             self.lifted = Some((lifted, engine));
         }
         Ok(())
     }
 
-    /// Stands on the supports as they are in `posture`: one has been put elsewhere.
-    pub(super) fn place_again(&mut self, posture: &Posture) -> Result<(), ScenarioError> {
+    /// Stands on the supports `in_use` as they are in `posture`: one has been put elsewhere, put down or taken off.
+    pub(super) fn place_again(&mut self, posture: &Posture, in_use: &[usize]) -> Result<(), ScenarioError> {
         let (levels, loads) = (self.engine.levels().to_vec(), self.engine.loads().to_vec());
-        *self = Self::new(self.scenario, self.model.clone(), posture)?;
+        *self = Self::new(self.scenario, self.model.clone(), posture, in_use)?;
         self.engine.levels_mut().clone_from_slice(&levels);
         self.engine.set_loads(&loads)?;
         self.requested.clear();

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::posture::Posture;
 use crate::posture_solver::{LevelError, Options};
 use crate::statics::Load;
-use crate::tasks::PriorityLevel;
+use crate::tasks::{PriorityLevel, Task};
 
 use super::Scenario;
 
@@ -96,7 +96,7 @@ pub(super) fn easiest(
     scenario: &Scenario,
     now: Now<'_>,
     errors: &[f64],
-    supports: &[Support],
+    (supports, limits): (&[Support], &[Task]),
     budget: Budget,
 ) -> Result<Searched<Option<Posture>>, SearchError> {
     let mut locked = vec![false; scenario.model.rates().len()];
@@ -105,7 +105,7 @@ pub(super) fn easiest(
     }
     scenario.locked_rates().for_each(|rate| locked[rate] = true);
     let locked: Vec<usize> = (0..locked.len()).filter(|&rate| locked[rate]).collect();
-    let Searched { found, minima, work, cut } = search(scenario, now, supports, &locked, budget)?;
+    let Searched { found, minima, work, cut } = search(scenario, now, (supports, limits), &locked, budget)?;
     let better = |best: &RelaxedPosture| {
         let farther = first_difference(&best.relaxed.levels, errors);
         let easier = best.relaxed.effort < WORTH_A_MOTION * now.effort;
@@ -125,7 +125,7 @@ pub(super) fn first_difference(levels: &[LevelError], errors: &[f64]) -> f64 {
 pub(super) fn search(
     scenario: &Scenario,
     now: Now<'_>,
-    supports: &[Support],
+    (supports, limits): (&[Support], &[Task]),
     locked: &[usize],
     budget: Budget,
 ) -> Result<Searched<Vec<RelaxedPosture>>, SearchError> {
@@ -135,7 +135,7 @@ pub(super) fn search(
         model: now.model,
         start: now.posture,
         supports,
-        limits: &scenario.limits,
+        limits,
         goals: &goals,
         loads: now.loads,
         locked,

@@ -1,17 +1,21 @@
-//! Decides whether a support is put elsewhere to relieve a tired muscle group.
+//! Decides whether a support is put elsewhere, put down or taken off to relieve a tired muscle group.
 //!
 //! A step is a relief like the others: its goal is the one of the tables. The search of [`crate::equilibria`] chooses place and posture
-//! together. A posture counts where the tired joint is nearer to its goal, its group works less, and the whole body needs clearly less
-//! effort than now; of these the body takes the one of least effort to which there is a way in balance, on which the other supports take
-//! the weight first.
+//! together. A posture counts where the tired group works less, its joint is nearer to its goal (of a step; for a hand that is put down or
+//! taken off the joint may move either way), and the whole body needs clearly less effort than now; of these the body takes the one of least
+//! effort to which there is a way in balance, on which the other supports take the weight first.
+
+use std::cell::Cell;
 
 use nalgebra::Vector3;
 
 use super::ScenarioError;
-use super::body_motion::BodyMotion;
+use super::body_motion::{BodyMotion, is_effort};
 use super::easiest::{Budget, Now, Searched, search};
-use super::path::Path;
-use super::sample::FootStep;
+use super::offer::Offer;
+use super::path::{Path, Planner};
+use super::rest::Rest;
+use super::sample::{FootStep, StepKind};
 use crate::contact::{Place, Support};
 use crate::equilibria::{Aim, RelaxedPosture};
 use crate::kinematics::Kinematics;
@@ -23,6 +27,9 @@ use crate::tasks::{PriorityLevel, turned_since};
 const WORTH_A_STEP: f64 = 0.8;
 /// A support that would be shifted by less is left where it is, m (assumed).
 const LEAST_SHIFT: f64 = 0.02;
+
+/// One part in so many of the budget is kept for ways to what was found (assumed).
+const SHARE_OF_WAYS: usize = 8;
 
 /// The relief that asks.
 #[derive(Clone, Copy, Debug)]
@@ -52,32 +59,34 @@ pub(super) fn plan_step(
     let scenario = body.scenario();
     let (mut left, mut cut) = (budget, false);
     let (effort, mut found) = (body.effort(), vec![]);
-    let free: Vec<usize> =
-        (0..scenario.supports.len()).filter(|&i| scenario.supports[i].place != Place::Fixed).collect();
-    for (k, &i) in free.iter().enumerate() {
-        let mut supports = body.supports().to_vec();
-        supports[i].place = place_from(body, posture, &scenario.supports[i])?;
+    let offers = offers(body);
+    for (k, &offer) in offers.iter().enumerate() {
+        let Some(changed) = Changed::by(body, posture, offer, &mut left)? else { continue };
         let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
-        let now = Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort, aim: Aim::Ways };
+        let (loads, aim) = (body.loads(), Aim::Ways);
+        let now = Now { model: &body.model, posture: &changed.posture, levels: &levels, loads, effort, aim };
         let locked: Vec<usize> = scenario.locked_rates().collect();
-        let share = Budget { scattered: 0, work: left / (free.len() - k), carriers_stay: true };
-        let Ok(searched) = search(scenario, now, &supports, &locked, share) else { continue };
+        let work = left.saturating_sub(budget / SHARE_OF_WAYS) / (offers.len() - k);
+        let share = Budget { scattered: 0, work, carriers_stay: true };
+        let limits = scenario.limits_with(&changed.numbers);
+        let Ok(searched) = search(scenario, now, (&changed.supports, &limits), &locked, share) else { continue };
         left = left.saturating_sub(searched.work);
         cut |= searched.cut;
-        found.extend(searched.found.into_iter().map(|candidate| (i, candidate)));
+        found.extend(searched.found.into_iter().map(|candidate| (offer, candidate)));
     }
     found.sort_by(|(_, a), (_, b)| a.relaxed.effort.total_cmp(&b.relaxed.effort));
-    for (i, candidate) in found {
-        let (support, to) = (&scenario.supports[i], &candidate.relaxed.posture);
+    for (offer, candidate) in found {
+        let (support, to) = (&scenario.supports[offer.number], &candidate.relaxed.posture);
         let (before, after) = (middle(body, posture, support)?, middle(body, to, support)?);
-        let worth = candidate.relaxed.effort < WORTH_A_STEP * effort && relieves(&candidate, posture, tired);
+        let worth =
+            candidate.relaxed.effort < WORTH_A_STEP * effort && relieves(&candidate, offer.kind, posture, tired);
         if !worth || (after - before).norm() < LEAST_SHIFT {
             continue;
         }
-        if let Some(path) = body.way(posture, to, Some(i), &mut left) {
-            let (coordinate, side) = (tired.coordinate, tired.side);
+        if let Some(path) = body.way(posture, to, Some(offer), &mut left) {
+            let (coordinate, side, kind) = (tired.coordinate, tired.side, offer.kind);
             let (place, effort) = ((before.into(), after.into()), (effort, candidate.relaxed.effort));
-            let step = FootStep { support: i, coordinate, side, time: (0.0, 0.0), place, effort };
+            let step = FootStep { support: offer.number, kind, coordinate, side, time: (0.0, 0.0), place, effort };
             return Ok(Searched { found: Some(PlannedStep { path, step }), minima: vec![], work: budget - left, cut });
         }
     }
@@ -85,12 +94,62 @@ pub(super) fn plan_step(
     Ok(Searched { found: None, minima: vec![], work: budget - left, cut })
 }
 
-/// Whether the tired joint is nearer to its goal in a posture, and its group works clearly less.
-fn relieves(candidate: &RelaxedPosture, now: &Posture, tired: Tired) -> bool {
+/// The changes that the supports allow: those whose place is free may be put elsewhere, rests may be put down or taken off.
+fn offers(body: &BodyMotion<'_>) -> Vec<Offer> {
+    let free = |number: &&usize| body.scenario().supports[**number].place != Place::Fixed;
+    let elsewhere = body.in_use.iter().filter(free).map(|&number| Offer { number, kind: StepKind::Elsewhere });
+    elsewhere.chain(body.offers_of_rests()).collect()
+}
+
+/// Start of a search for the place of a support that changes.
+#[derive(Debug)]
+struct Changed {
+    /// Numbers of the supports after the change.
+    numbers: Vec<usize>,
+    /// The same supports; the changed one is free.
+    supports: Vec<Support>,
+    posture: Posture,
+}
+
+impl Changed {
+    /// After an offer; `None` where a patch cannot be laid on its plane.
+    fn by(
+        body: &BodyMotion<'_>,
+        posture: &Posture,
+        offer: Offer,
+        left: &mut usize,
+    ) -> Result<Option<Self>, ScenarioError> {
+        let scenario = body.scenario();
+        let (mut numbers, mut supports) = body.with_change(Some(offer));
+        let Some(local) = numbers.iter().position(|number| *number == offer.number) else { return Ok(None) };
+        let rest = scenario.rests.iter().find(|rest| rest.support == offer.number);
+        let free = &scenario.supports[offer.number];
+        let mut from = posture.clone();
+        match (offer.kind, rest) {
+            (StepKind::TakenOff, _) => {
+                numbers.remove(local);
+                supports.remove(local);
+            }
+            (StepKind::PutDown, Some(rest)) => {
+                let Some(laid) = body.laid(posture, rest, left) else { return Ok(None) };
+                supports[local].place = free.place.clone();
+                from = laid;
+            }
+            // The turn of a rest is counted from where it lies, that of another support from the start.
+            (_, Some(_)) => supports[local].place = free.place.clone(),
+            (_, None) => supports[local].place = place_from(body, posture, free)?,
+        }
+        Ok(Some(Self { numbers, supports, posture: from }))
+    }
+}
+
+/// Whether the tired group works clearly less in a posture; after a step its joint must also be nearer to its goal.
+fn relieves(candidate: &RelaxedPosture, kind: StepKind, now: &Posture, tired: Tired) -> bool {
     let i = tired.coordinate;
     let change = candidate.relaxed.posture.values()[i] - now.values()[i];
     let work = candidate.work.iter().find(|work| work.coordinate == i && work.side == tired.side);
-    change * tired.toward > 0.0 && work.map_or(0.0, |work| work.relative_load()) < WORTH_A_STEP * tired.load
+    let nearer = kind != StepKind::Elsewhere || change * tired.toward > 0.0;
+    nearer && work.map_or(0.0, |work| work.relative_load()) < WORTH_A_STEP * tired.load
 }
 
 /// Middle of a support's patch in a posture, ground, m.
@@ -109,4 +168,37 @@ fn evaluated(body: &BodyMotion<'_>, posture: &Posture) -> Result<Kinematics, Sce
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, posture).map_err(crate::joint_torques::JointTorquesError::from)?;
     Ok(kinematics)
+}
+
+impl BodyMotion<'_> {
+    /// The rests that may be put on their planes, and those in use that may be taken off.
+    pub(super) fn offers_of_rests(&self) -> impl Iterator<Item = Offer> {
+        self.scenario.rests.iter().map(|rest| {
+            let kind = if self.in_use.contains(&rest.support) { StepKind::TakenOff } else { StepKind::PutDown };
+            Offer { number: rest.support, kind }
+        })
+    }
+
+    /// The posture nearest to `posture` in which the patch of a rest lies in its region, the supports in use stay where they are and tasks are
+    /// done as far as that allows; `None` where there is none. `left` of a budget of work becomes less.
+    pub(super) fn laid(&self, posture: &Posture, rest: &Rest, left: &mut usize) -> Option<Posture> {
+        let levels: Vec<PriorityLevel> = {
+            let above = self.levels().take_while(|level| !is_effort(level));
+            above.filter(|level| level.half_spaces.is_empty()).cloned().collect()
+        };
+        let (numbers, _) = self.with_change(Some(Offer { number: rest.support, kind: StepKind::PutDown }));
+        let planner = Planner {
+            scenario: self.scenario,
+            model: &self.model,
+            supports: &self.supports,
+            numbers: &self.in_use,
+            limits: &self.scenario.limits_with(&numbers),
+            levels: &levels,
+            loads: self.engine.loads(),
+            left: Cell::new(*left),
+        };
+        let laid = planner.nearest(posture, rest.lies(&self.scenario.supports[rest.support]));
+        *left = planner.left.get();
+        laid.ok().flatten()
+    }
 }

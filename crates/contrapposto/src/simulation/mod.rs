@@ -16,24 +16,30 @@ mod motion;
 mod muscle_course;
 mod muscle_outcome;
 mod muscles_under_way;
+mod offer;
 mod path;
 mod prediction;
 mod relief_log;
+mod rest;
 mod run;
 mod sample;
 mod scenario;
+mod setting;
 mod state;
 mod step;
 mod strength;
 mod summary;
+mod swing;
 mod under_way;
 
 pub use muscle_outcome::{MuscleFailure, MuscleOutcome, MuscleSummary};
 pub use relief_log::{ReliefLog, ReliefRecord};
+pub use rest::Rest;
 pub use run::{Run, Snapshot, run};
-pub use sample::{Attempt, Contact, FootStep, Relief, Sample, Standing};
+pub use sample::{Attempt, Contact, FootStep, Relief, Sample, Standing, StepKind};
 pub use scenario::{
-    Event, ReliefSettings, RunSettings, Scenario, ScenarioError, Setting, StrategySettings, Tables, TaskSettings,
+    Event, ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables, TaskSettings,
 };
+pub use setting::Setting;
 pub use step::Simulation;
 pub use summary::{CoordinateSummary, Fall, Hazardous, StopReason, Summary};

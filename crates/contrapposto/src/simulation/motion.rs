@@ -17,14 +17,15 @@ pub(super) enum Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    /// The motion of a scenario whose supports are as in the posture `placed_at`.
+    /// The motion of a scenario whose supports `in_use` are as in the posture `placed_at`.
     pub(super) fn new(
         scenario: &'a Scenario,
         model: SharedModel<'a>,
         placed_at: &Posture,
+        in_use: &[usize],
     ) -> Result<Self, ScenarioError> {
         if scenario.has_supports_or_tasks() {
-            return Ok(Self::Body(Box::new(BodyMotion::new(scenario, model, placed_at)?)));
+            return Ok(Self::Body(Box::new(BodyMotion::new(scenario, model, placed_at, in_use)?)));
         }
         Ok(Self::Joints(Box::new(JointMotion::new(scenario, model))))
     }

@@ -7,7 +7,7 @@
 
 use std::cell::Cell;
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Balance, Support};
@@ -17,24 +17,24 @@ use crate::model::{Coordinate, Model, Placement};
 use crate::posture::Posture;
 use crate::posture_solver::{Engine, EngineError, Options};
 use crate::statics::Load;
-use crate::tasks::{self, CenterOfMass, CenterOfMassGoal, PriorityLevel, Task};
+use crate::tasks::{self, CenterOfMass, CenterOfMassGoal, PriorityLevel, Task, half_planes};
 
 use super::Scenario;
+use super::offer::Offer;
+use super::sample::StepKind;
 
 /// Greatest change of a rate in one step of the solver, rad or m.
 const PATH_STEP: f64 = 0.02;
 /// Greatest speed of a rate, rad/s or m/s (assumed: a slow, deliberate motion).
-const SPEED: f64 = 0.6;
-/// Time that a lifted support is in the air, s (assumed: a slow step).
-const SWING_TIME: f64 = 1.0;
-/// Height of the arc above the line between both places, m (assumed).
-const LIFT: f64 = 0.03;
+pub(super) const SPEED: f64 = 0.6;
 /// A body is at a posture when no rate differs by more, rad or m, and it stays where it is when no rate changes by more in a step.
-const AT_POSTURE: f64 = 1e-3;
-/// A lifted support has arrived when its place and rotation differ by no more, m and rad.
-const PLACED: f64 = 1e-6;
+pub(super) const AT_POSTURE: f64 = 1e-3;
+/// Least distance of the centre of mass from the edge of the other supports while a hand is taken off, m (assumed).
+const OFF_THE_EDGE: f64 = 0.01;
+/// A patch lies on its plane when it is no farther off, m and rad.
+const LAID: f64 = 1e-4;
 /// Most steps of the solver for each part of a way.
-const MOST_STEPS_OF_PART: usize = 600;
+pub(super) const MOST_STEPS_OF_PART: usize = 600;
 /// Tries in which a body shifts its weight off a support.
 const UNLOADING_STEPS: usize = 100;
 
@@ -42,7 +42,7 @@ const UNLOADING_STEPS: usize = 100;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Path {
     postures: Vec<Posture>,
-    /// By posture: the support that is in the air.
+    /// By posture: the number of the support that is in the air.
     lifted: Vec<Option<usize>>,
     /// Number of postures taken.
     taken: usize,
@@ -55,7 +55,7 @@ impl Path {
         self.postures.get(self.taken - 1)
     }
 
-    fn push(&mut self, posture: &Posture, lifted: Option<usize>) {
+    pub(super) fn push(&mut self, posture: &Posture, lifted: Option<usize>) {
         self.postures.push(posture.clone());
         self.lifted.push(lifted);
     }
@@ -69,7 +69,7 @@ impl Path {
         self.taken >= self.postures.len()
     }
 
-    /// The support that is in the air in the posture taken last.
+    /// The number of the support that is in the air in the posture taken last.
     pub(super) fn lifted(&self) -> Option<usize> {
         self.taken.checked_sub(1).and_then(|last| self.lifted.get(last).copied().flatten())
     }
@@ -93,8 +93,11 @@ pub(super) struct Planner<'a> {
     pub(super) scenario: &'a Scenario,
     /// The body, with the strength of its present posture.
     pub(super) model: &'a Model,
-    /// All supports, none of them free.
+    /// All supports before and after the change, none of them free, and their numbers in the scenario.
     pub(super) supports: &'a [Support],
+    pub(super) numbers: &'a [usize],
+    /// Inequalities above all tasks.
+    pub(super) limits: &'a [Task],
     /// The levels above effort.
     pub(super) levels: &'a [PriorityLevel],
     pub(super) loads: &'a [Load],
@@ -106,21 +109,40 @@ impl Planner<'_> {
     /// The way to `to` while all supports stay; `None` where there is none.
     pub(super) fn way(&self, from: &Posture, to: &Posture) -> Result<Option<Path>, EngineError> {
         let mut path = Path { postures: vec![], lifted: vec![], taken: 0 };
-        let arrived = self.shift(from, to, &mut path)?;
+        let arrived = self.shift((from, to), (self.supports, vec![]), &mut path)?;
         Ok(arrived.map(|_| path))
     }
 
-    /// The way to `to`, where support number `lifted` has another place; `None` where there is none.
-    pub(super) fn step(&self, from: &Posture, to: &Posture, lifted: usize) -> Result<Option<Path>, EngineError> {
+    /// The way to `to` with a change of a support; `None` where there is none.
+    pub(super) fn step(&self, from: &Posture, to: &Posture, offer: Offer) -> Result<Option<Path>, EngineError> {
         let mut path = Path { postures: vec![], lifted: vec![], taken: 0 };
-        let Some(unloaded) = self.unloaded(from, lifted)? else { return Ok(None) };
-        let Some(begin) = self.shift(from, &unloaded, &mut path)? else { return Ok(None) };
-        let Some(landed) = self.swing(&begin, to, lifted, &mut path)? else { return Ok(None) };
-        Ok(self.shift(&landed, to, &mut path)?.map(|_| path))
+        let Some(lifted) = self.numbers.iter().position(|number| *number == offer.number) else { return Ok(None) };
+        // While a hand is taken off, the centre of mass is kept inside the corners of the other supports.
+        let off_the_edge = |from: &Posture| match offer.kind {
+            StepKind::TakenOff => self.between_the_others(from, lifted).map(|task| vec![task]),
+            _ => Ok(vec![]),
+        };
+        let mut begin = from.clone();
+        if offer.kind != StepKind::PutDown {
+            let Some(unloaded) = self.unloaded(from, (lifted, offer.kind))? else { return Ok(None) };
+            let over = off_the_edge(from)?;
+            let Some(reached) = self.shift((from, &unloaded), (self.supports, over), &mut path)? else {
+                return Ok(None);
+            };
+            begin = reached;
+        }
+        let Some(landed) = self.swing(&begin, to, (lifted, offer.kind), &mut path)? else { return Ok(None) };
+        let supports = if offer.kind == StepKind::TakenOff { self.without(lifted) } else { self.supports.to_vec() };
+        let over = off_the_edge(&landed)?;
+        Ok(self.shift((&landed, to), (&supports, over), &mut path)?.map(|_| path))
     }
 
     /// One step of the solver; gives the largest change, none where the budget is spent.
-    fn step_within_budget(&self, engine: &mut Engine<'_>, posture: &mut Posture) -> Result<Option<f64>, EngineError> {
+    pub(super) fn step_within_budget(
+        &self,
+        engine: &mut Engine<'_>,
+        posture: &mut Posture,
+    ) -> Result<Option<f64>, EngineError> {
         if self.left.get() == 0 {
             return Ok(None);
         }
@@ -130,7 +152,7 @@ impl Planner<'_> {
     }
 
     /// Steps of the solver from one sample to the next, so that no rate moves faster than [`SPEED`].
-    fn steps_of_sample(&self) -> usize {
+    pub(super) fn steps_of_sample(&self) -> usize {
         (SPEED * self.scenario.run.step / PATH_STEP).ceil().max(1.0) as usize
     }
 
@@ -140,7 +162,7 @@ impl Planner<'_> {
     }
 
     /// An engine without effort whose last level asks for the coordinates of `to`; `first` stands above the other levels.
-    fn engine(
+    pub(super) fn engine(
         &self,
         at: &Posture,
         supports: &[Support],
@@ -154,32 +176,32 @@ impl Planner<'_> {
         levels.push(Task::Posture(tasks::Posture::whole(model, to.clone())).into());
         let mut engine = Engine::with_supports(model, at, supports.to_vec(), levels, self.loads, self.options())?;
         self.scenario.locked_rates().for_each(|rate| engine.lock(rate));
-        self.scenario.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
+        self.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
         Ok(engine)
     }
 
-    fn without(&self, lifted: usize) -> Vec<Support> {
+    pub(super) fn without(&self, lifted: usize) -> Vec<Support> {
         let others = self.supports.iter().enumerate().filter(|(i, _)| *i != lifted);
         others.map(|(_, support)| support.clone()).collect()
     }
 
     /// Placement of the segment of a support in a posture.
-    fn placement(&self, posture: &Posture, support: usize) -> Result<Placement, EngineError> {
+    pub(super) fn placement(&self, posture: &Posture, support: usize) -> Result<Placement, EngineError> {
         let model = self.model;
         let mut kinematics = Kinematics::new(model);
         kinematics.update(model, posture).map_err(crate::joint_torques::JointTorquesError::from)?;
         Ok(kinematics.placement(model, self.supports[support].segment))
     }
 
-    fn held_at(&self, target: Placement, support: usize) -> Task {
+    pub(super) fn held_at(&self, target: Placement, support: usize) -> Task {
         let segment = self.supports[support].segment;
         Task::Placement(tasks::Placement { segment, point: Vector3::zeros(), target })
     }
 
     /// The posture nearest to `from` in which the other supports hold the body while the lifted one touches its place.
-    fn unloaded(&self, from: &Posture, lifted: usize) -> Result<Option<Posture>, EngineError> {
+    fn unloaded(&self, from: &Posture, (lifted, kind): (usize, StepKind)) -> Result<Option<Posture>, EngineError> {
         let stays = self.held_at(self.placement(from, lifted)?, lifted);
-        let Some(over_the_others) = self.over_the_others(from, lifted)? else { return Ok(None) };
+        let Some(over_the_others) = self.over_the_others(from, (lifted, kind))? else { return Ok(None) };
         let mut engine = self.engine(from, &self.without(lifted), vec![stays, over_the_others], from)?;
         let mut posture = from.clone();
         for _ in 0..UNLOADING_STEPS {
@@ -191,13 +213,23 @@ impl Planner<'_> {
         Ok(self.is_held(&mut engine, &posture)?.then_some(posture))
     }
 
-    /// The centre of mass over the other supports, each by the weight that it carries in `from`; `None` where they carry nothing.
-    fn over_the_others(&self, from: &Posture, lifted: usize) -> Result<Option<Task>, EngineError> {
+    /// The centre of mass over the other supports: for a hand that is taken off between their corners, else each by the weight that it carries in
+    /// `from`; `None` where they carry nothing.
+    pub(super) fn over_the_others(
+        &self,
+        from: &Posture,
+        (lifted, kind): (usize, StepKind),
+    ) -> Result<Option<Task>, EngineError> {
+        if kind == StepKind::TakenOff {
+            return self.between_the_others(from, lifted).map(Some);
+        }
+        let touches = kind == StepKind::Elsewhere;
         let model = self.model;
-        let mut engine = self.engine(from, self.supports, vec![], from)?;
+        let supports = if touches { self.supports.to_vec() } else { self.without(lifted) };
+        let mut engine = self.engine(from, &supports, vec![], from)?;
         engine.evaluate(from)?;
         let (mut target, mut weight) = (Vector3::zeros(), 0.0);
-        for (i, support) in self.supports.iter().enumerate().filter(|(i, _)| *i != lifted) {
+        for (i, support) in supports.iter().enumerate().filter(|(i, _)| !touches || *i != lifted) {
             let share = engine.contact().share(i).max(0.0);
             target += share * engine.torques().kinematics().station(model, support.segment, support.middle());
             weight += share;
@@ -210,8 +242,35 @@ impl Planner<'_> {
         Ok(Some(Task::CenterOfMass(CenterOfMass { goal })))
     }
 
+    /// The centre of mass between the corners of the other supports, off the edge of balance.
+    fn between_the_others(&self, from: &Posture, lifted: usize) -> Result<Task, EngineError> {
+        let mut kinematics = Kinematics::new(self.model);
+        kinematics.update(self.model, from).map_err(crate::joint_torques::JointTorquesError::from)?;
+        let others = self.without(lifted);
+        let corner = |support: &Support, at: &Vector3<f64>| kinematics.station(self.model, support.segment, *at);
+        let corners = others.iter().flat_map(|support| support.corners.iter().map(move |at| corner(support, at)));
+        let polygon = half_planes(&corners.collect::<Vec<_>>(), self.model.gravity());
+        let goal = CenterOfMassGoal::Inside { polygon, margin: OFF_THE_EDGE };
+        Ok(Task::CenterOfMass(CenterOfMass { goal }))
+    }
+
+    /// The posture nearest to `from` in which two tasks are met, the supports stay, and the other tasks are done as far as that allows, whether the
+    /// supports hold the body in it or not; `None` where the two are not met.
+    pub(super) fn nearest(&self, from: &Posture, tasks: [Task; 2]) -> Result<Option<Posture>, EngineError> {
+        let mut engine = self.engine(from, self.supports, tasks.to_vec(), from)?;
+        let mut posture = from.clone();
+        for _ in 0..MOST_STEPS_OF_PART {
+            let Some(largest) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
+            if largest <= AT_POSTURE {
+                break;
+            }
+        }
+        let met = engine.report(&posture)?.iter().take(2).all(|level| level.length <= LAID);
+        Ok(met.then_some(posture))
+    }
+
     /// Whether the supports hold the body in a posture, and no group needs more than its strength.
-    fn is_held(&self, engine: &mut Engine<'_>, posture: &Posture) -> Result<bool, EngineError> {
+    pub(super) fn is_held(&self, engine: &mut Engine<'_>, posture: &Posture) -> Result<bool, EngineError> {
         engine.evaluate(posture)?;
         let torques = engine.torques();
         let load = |(i, coordinate): (usize, &Coordinate)| {
@@ -222,9 +281,14 @@ impl Planner<'_> {
         Ok(strong && engine.contact().balance() == Balance::Held)
     }
 
-    /// Moves to `to` on all supports as they are in `from`; gives the posture that was reached.
-    fn shift(&self, from: &Posture, to: &Posture, path: &mut Path) -> Result<Option<Posture>, EngineError> {
-        let mut engine = self.engine(from, self.supports, vec![], to)?;
+    /// Moves to `to` on `supports` as they are in `from`, `first` above the tasks; gives the posture that was reached.
+    fn shift(
+        &self,
+        (from, to): (&Posture, &Posture),
+        (supports, first): (&[Support], Vec<Task>),
+        path: &mut Path,
+    ) -> Result<Option<Posture>, EngineError> {
+        let mut engine = self.engine(from, supports, first, to)?;
         let mut posture = from.clone();
         let mut steps = 0;
         loop {
@@ -246,51 +310,5 @@ impl Planner<'_> {
                 return Ok(Some(posture));
             }
         }
-    }
-
-    /// Carries the lifted support along an arc to its place in `to`, while the body moves toward `to`.
-    fn swing(
-        &self,
-        from: &Posture,
-        to: &Posture,
-        lifted: usize,
-        path: &mut Path,
-    ) -> Result<Option<Posture>, EngineError> {
-        let (begin, end) = (self.placement(from, lifted)?, self.placement(to, lifted)?);
-        let Some(over_the_others) = self.over_the_others(from, lifted)? else { return Ok(None) };
-        let first = vec![self.held_at(begin, lifted), over_the_others];
-        let mut engine = self.engine(from, &self.without(lifted), first, to)?;
-        let samples = (SWING_TIME / self.scenario.run.step).ceil().max(1.0);
-        let steps = self.steps_of_sample().max((20.0 / samples).ceil() as usize);
-        let count = samples as usize * steps;
-        let mut posture = from.clone();
-        for k in 1..=count {
-            let share = k as f64 / count as f64;
-            let height = LIFT * 4.0 * share * (1.0 - share) * self.supports[lifted].normal;
-            let translation = begin.translation.vector.lerp(&end.translation.vector, share) + height;
-            let rotation = UnitQuaternion::slerp(&begin.rotation, &end.rotation, share);
-            let target = Placement::from_parts(translation.into(), rotation);
-            engine.levels_mut()[0].tasks[0] = self.held_at(target, lifted);
-            let Some(_) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
-            if k % steps == 0 && k < count {
-                if !self.is_held(&mut engine, &posture)? {
-                    return Ok(None);
-                }
-                path.push(&posture, Some(lifted));
-            }
-        }
-        // The last of the arc: until the support has come to rest on its place.
-        for _ in 0..MOST_STEPS_OF_PART {
-            let Some(largest) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
-            if largest <= AT_POSTURE && engine.report(&posture)?.first().is_some_and(|level| level.length <= PLACED) {
-                break;
-            }
-        }
-        let missed = engine.report(&posture)?.first().map_or(0.0, |level| level.length);
-        if !self.is_held(&mut engine, &posture)? || missed > PLACED {
-            return Ok(None);
-        }
-        path.push(&posture, Some(lifted));
-        Ok(Some(posture))
     }
 }

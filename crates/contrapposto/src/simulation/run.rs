@@ -225,6 +225,7 @@ impl<'a> Run<'a> {
             effort_at_start: self.so_far.effort_at_start,
             search_cut: self.simulation.state.search_cut,
             foot_steps: self.simulation.foot_steps().to_vec(),
+            in_use: self.simulation.state.in_use.clone(),
             standing: self.standing.clone(),
             muscles,
         }

@@ -161,11 +161,35 @@ pub struct Contact {
     pub couple: Vector3<f64>,
 }
 
-/// A support that was put elsewhere.
+/// Way in which the body changes what carries it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum StepKind {
+    /// A support is put elsewhere on its plane.
+    Elsewhere,
+    /// A support that was not in use is put on its plane.
+    PutDown,
+    /// A support is taken off its plane.
+    TakenOff,
+}
+
+impl StepKind {
+    /// `elsewhere`, `put_down` or `taken_off`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Elsewhere => "elsewhere",
+            Self::PutDown => "put_down",
+            Self::TakenOff => "taken_off",
+        }
+    }
+}
+
+/// A support that was put elsewhere, put on its plane or taken off it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FootStep {
     /// Index of the support.
     pub support: usize,
+    /// The change.
+    pub kind: StepKind,
     /// The coordinate whose relief asked for it, and its tired group.
     pub coordinate: usize,
     /// See `coordinate`.

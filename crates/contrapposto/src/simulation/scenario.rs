@@ -1,6 +1,8 @@
 //! Describes an experiment: body, start, loads, strategy and thresholds, all checked before the first step.
 
 use super::Fall;
+use super::rest::{Rest, check_rests, limits_with};
+use super::setting::Setting;
 use crate::contact::{Missing, Support, SupportError};
 use crate::fatigue::Hysteresis;
 use crate::hybrid::Strategy;
@@ -117,8 +119,10 @@ pub struct Scenario {
     pub free: Vec<bool>,
     /// Loads besides the weight of the body.
     pub loads: Vec<Load>,
-    /// Supports of the body. Without supports the root is held as if by hand.
+    /// Supports of the body, those of [`Scenario::rests`] last. Without supports the root is held as if by hand.
     pub supports: Vec<Support>,
+    /// The supports that are not in use at the start: a run puts them on their planes, and takes them off, to relieve a tired group.
+    pub rests: Vec<Rest>,
     /// Inequalities above all tasks.
     pub limits: Vec<Task>,
     /// Tasks, the most important first.
@@ -137,66 +141,6 @@ pub struct Scenario {
     pub start_fatigue: Vec<[f64; 2]>,
     /// Duration and time step.
     pub run: RunSettings,
-}
-
-/// A number of a scenario; prints as its name with its unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Setting {
-    /// Number of free flags: one a coordinate.
-    FreeFlags,
-    /// Number of strategies: none, or one a coordinate.
-    Strategies,
-    /// Time of an event.
-    EventTime,
-    /// Number of the task that an event changes.
-    EventTask,
-    /// Number of fatigue pairs: one a coordinate.
-    FatiguePairs,
-    /// Fatigue of a muscle group at the start.
-    StartFatigue,
-    /// Least decrease ratio `R_min`.
-    MinimumDecreaseRatio,
-    /// Step gain `beta` of Eq. 9.
-    StepGain,
-    /// Greatest step `delta theta_max` of Eq. 9.
-    MaxStep,
-    /// Torque tolerance `eps`.
-    TorqueTolerance,
-    /// Greatest effort of the body, by the effort before all present reliefs.
-    EffortFactor,
-    /// Fatigue at which relief begins.
-    CriticalLevel,
-    /// Fatigue at which relief ends.
-    RecoveryLevel,
-    /// Simulated time.
-    Duration,
-    /// Time from one sample to the next.
-    TimeStep,
-    /// Duration in time steps.
-    Steps,
-}
-
-impl std::fmt::Display for Setting {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::FreeFlags => "number of free flags",
-            Self::Strategies => "number of strategies",
-            Self::EventTime => "time of an event (s)",
-            Self::EventTask => "place of a task that an event changes",
-            Self::FatiguePairs => "number of fatigue pairs",
-            Self::StartFatigue => "fatigue at the start",
-            Self::MinimumDecreaseRatio => "minimum decrease ratio",
-            Self::StepGain => "step gain",
-            Self::MaxStep => "greatest step (rad)",
-            Self::TorqueTolerance => "torque tolerance (N m)",
-            Self::EffortFactor => "effort factor",
-            Self::CriticalLevel => "critical level",
-            Self::RecoveryLevel => "recovery level",
-            Self::Duration => "duration (s)",
-            Self::TimeStep => "time step (s)",
-            Self::Steps => "number of steps",
-        })
-    }
 }
 
 /// The reason for which an experiment was refused or a run ended.
@@ -282,6 +226,16 @@ impl Scenario {
         rates.filter(|(_, rate)| rate.coordinate.is_some_and(|c| !self.free[c])).map(|(i, _)| i)
     }
 
+    /// The supports in use at the start.
+    pub fn supports_at_start(&self) -> &[Support] {
+        &self.supports[..self.supports.len() - self.rests.len().min(self.supports.len())]
+    }
+
+    /// The inequalities above all tasks while the supports with these numbers are in use.
+    pub(crate) fn limits_with(&self, in_use: &[usize]) -> Vec<Task> {
+        limits_with(&self.limits, (&self.rests, &self.supports), &self.model, in_use)
+    }
+
     /// Whether the body has supports or tasks. Without them each coordinate finds relief on its own.
     pub fn has_supports_or_tasks(&self) -> bool {
         !self.supports.is_empty() || !self.tasks.is_empty()
@@ -303,6 +257,7 @@ impl Scenario {
             load.check(&self.model)?;
         }
         self.supports.iter().try_for_each(|support| support.check(&self.model))?;
+        check_rests(&self.rests, &self.supports, &self.model)?;
         self.tasks.iter().enumerate().try_for_each(|(i, task)| self.check_task(i, &task.goal))?;
         let count = self.model.coordinates().len() as f64;
         check_setting(self.free.len() as f64 == count, Setting::FreeFlags, self.free.len() as f64, "one a coordinate")?;

@@ -39,6 +39,8 @@ pub(super) struct State {
     pub(super) reliefs_move: bool,
     /// Posture in which the supports are at their places, once one of them has been put elsewhere.
     pub(super) placed_at: Option<Posture>,
+    /// Numbers of the supports in use, ascending.
+    pub(super) in_use: Vec<usize>,
     /// The way that the body follows.
     pub(super) path: Option<Path>,
     /// Supports put elsewhere so far; the way follows the last one until it has an end.
@@ -96,8 +98,8 @@ pub(super) struct Following {
 const CONTRARY_DECISIONS: u32 = 30;
 
 impl State {
-    /// `n` coordinates at the start.
-    pub(super) fn new(posture: Posture, strategies: Vec<Strategy>) -> Self {
+    /// At the start, on so many supports.
+    pub(super) fn new(posture: Posture, strategies: Vec<Strategy>, supports: usize) -> Self {
         let n = strategies.len();
         let request = Request {
             half_space: HalfSpace::new(n),
@@ -124,6 +126,7 @@ impl State {
             requests: vec![request; n],
             reliefs_move: false,
             placed_at: None,
+            in_use: (0..supports).collect(),
             path: None,
             foot_steps: vec![],
             step_tried: vec![false; n],
@@ -150,6 +153,8 @@ impl State {
         let sizes = self.requests.iter().map(|request| request.half_space.normal.len());
         counts.into_iter().chain(sizes).all(|count| count == n)
             && self.next_event <= events
+            && self.in_use.is_sorted_by(|a, b| a < b)
+            && self.in_use.last().is_none_or(|last| *last < supports)
             && self.effort.is_none_or(f64::is_finite)
             && self.effort_at_start.is_none_or(f64::is_finite)
             && self.active.iter().chain(self.fatigue.iter().flatten()).all(|v| v.is_finite())
@@ -273,7 +278,7 @@ mod tests {
 
     /// One coordinate at 0 whose groups both recover.
     fn state() -> State {
-        let mut state = State::new(Posture::new(vec![0.0]), vec![Strategy::Passive]);
+        let mut state = State::new(Posture::new(vec![0.0]), vec![Strategy::Passive], 0);
         state.groups[0].iter_mut().for_each(|group| group.recovering = true);
         state
     }

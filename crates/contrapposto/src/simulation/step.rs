@@ -49,7 +49,8 @@ impl<'a> Simulation<'a> {
             true => vec![scenario.strategy.kind; scenario.model.coordinates().len()],
             false => scenario.strategies.clone(),
         };
-        let mut simulation = Self::with(scenario, State::new(scenario.start.clone(), strategies))?;
+        let mut simulation =
+            Self::with(scenario, State::new(scenario.start.clone(), strategies, scenario.supports_at_start().len()))?;
         if let Some(body) = simulation.motion.body_mut() {
             let Searched { found, minima, work, cut } = body.start()?;
             simulation.state.minima = minima;
@@ -109,7 +110,7 @@ impl<'a> Simulation<'a> {
         let model = model.unwrap_or(SharedModel::Borrowed(&scenario.model));
         let placed_at = state.placed_at.as_ref().unwrap_or(&scenario.start);
         Ok(Self {
-            motion: Motion::new(scenario, model.clone(), placed_at)?,
+            motion: Motion::new(scenario, model.clone(), placed_at, &state.in_use)?,
             scenario,
             state,
             model,

@@ -147,6 +147,8 @@ pub struct Summary {
     pub search_cut: bool,
     /// Supports that were put elsewhere.
     pub foot_steps: Vec<FootStep>,
+    /// Numbers of the supports in use at the end, ascending.
+    pub in_use: Vec<usize>,
     /// The greatest distance of the supports from their places, and when that was, s; `None` without supports.
     pub slip: Option<(Slip, f64)>,
     /// Since when the supports of the last sample have been farther away than [`Slip::GREATEST`], s.

@@ -2,7 +2,7 @@
 
 use super::easiest::{Budget, Eased, SEARCH_BUDGET, SEARCH_BUDGET_OF_STEP, Searched};
 use super::foot_step::{PlannedStep, Tired, plan_step};
-use super::{FootStep, ScenarioError, Simulation};
+use super::{FootStep, ScenarioError, Simulation, StepKind};
 use crate::hybrid::Decision;
 use crate::model::Side;
 
@@ -26,7 +26,16 @@ impl Simulation<'_> {
         let lands = (was_lifted && lifted.is_none()) || (is_over && has_step);
         body.lift(if is_over { None } else { lifted })?;
         if lands {
-            body.place_again(&self.state.posture)?;
+            let in_use = &mut self.state.in_use;
+            match self.state.foot_steps.last() {
+                Some(step) if step.kind == StepKind::PutDown && !in_use.contains(&step.support) => {
+                    in_use.push(step.support);
+                    in_use.sort_unstable();
+                }
+                Some(step) if step.kind == StepKind::TakenOff => in_use.retain(|number| *number != step.support),
+                _ => {}
+            }
+            body.place_again(&self.state.posture, in_use)?;
             self.state.placed_at = Some(self.state.posture.clone());
             self.state.eased = None;
             self.state.minima.clear();

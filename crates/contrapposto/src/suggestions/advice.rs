@@ -1,17 +1,23 @@
 //! Says which changes of a job help, and which were not tried.
 
 use super::budget::{Budget, Trial, within};
-use super::change::{Change, Job, SHELF};
+use super::change::{Change, SHELF};
 use super::gain::Gains;
+use super::job::Job;
 use super::largest::LargestLoad;
 use super::trial::Suggestion;
 use crate::tasks::Unit;
-use crate::verdict::{A_DAY, Line, Verdict, VerdictKind, has_motors};
+use crate::verdict::{A_DAY, Line, Verdict, VerdictKind, asked_in_words, has_motors};
 
 /// The sentence of a job with reserve.
 const NOTHING: &str = "Nothing needs to change";
 /// The name of the column of the job where no change stands below it.
 const AS_IT_IS: &str = "The job";
+/// People whose strength is one standard deviation below the mean.
+const WEAKER_PEOPLE: &str = "weaker people";
+/// Most pairs of changes that are tried. Assumed.
+const MOST_PAIRS: usize = 2;
+
 /// The changes of a job that were tried.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Advice {
@@ -39,43 +45,67 @@ impl Advice {
         trial: impl Fn(&Change) -> Trial + Sync,
     ) -> Self {
         if verdict.has_reserve() {
-            if verdict.hardest.is_none() {
-                return Self::default();
-            }
-            let judged = verdict.lines.iter().any(|line| line.name == Line::HAZARD);
-            let about = match (has_motors(job.model), judged) {
-                (true, _) => "",
-                (false, true) => " for muscles and ligaments",
-                (false, false) => " for muscles",
-            };
-            // Where no time is asked, weaker people may tire, and nobody knows whether that is too early.
-            let who = if verdict.least.is_some_and(|least| least < A_DAY) && verdict.asked.is_none() {
-                " of people of mean strength"
-            } else {
-                ""
-            };
-            let gains = Gains::new(job.model, AS_IT_IS, verdict, &[]);
-            return Self { gains, notes: vec![format!("{NOTHING}{about}{who}.")], ..Self::default() };
+            return Self::of_reserve(verdict, job);
         }
         if let Some(why) = out_of_reach(verdict) {
             return Self { notes: vec![why.to_owned()], ..Self::default() };
         }
-        let changes = changes();
-        let trials = within(budget, &changes, trial);
-        let not_tried: Vec<String> = changes[trials.len()..].iter().map(|change| change.in_words(job)).collect();
+        let mut changes = changes();
         let suggestion =
             |(change, trial): (&Change, &Trial)| Some(Suggestion::new(job, change, trial.verdict.as_ref()?));
-        let all: Vec<Suggestion> = changes.iter().zip(&trials).filter_map(suggestion).chain(known()).collect();
+        let mut trials = within(budget, &changes, &trial);
+        let not_tried = changes.split_off(trials.len());
+        let mut all: Vec<Suggestion> = changes.iter().zip(&trials).filter_map(suggestion).chain(known()).collect();
+        let single = Suggestion::that_help(all.clone(), verdict);
         let tried: Vec<String> = all.iter().map(|one| one.change.clone()).collect();
+        let lacking = lacking(verdict, &single);
+        let mut two_tried = false;
+        if (lacking.is_some() || single.is_empty()) && not_tried.is_empty() {
+            let two = pairs(job, &single, &changes);
+            let steps = budget.steps.saturating_sub(trials.iter().map(|trial| trial.steps).sum());
+            trials = within(Budget { steps, ..budget }, &two, &trial);
+            two_tried = !trials.is_empty();
+            all.extend(two.iter().zip(&trials).filter_map(suggestion));
+        }
+        let not_tried: Vec<String> = not_tried.iter().map(|change| change.in_words(job)).collect();
         let helping = Suggestion::that_help(all, verdict);
         let gains = match helping.is_empty() {
             true if !verdict.kind.is_done() || verdict.hardest.is_none() => Gains::default(),
             true => Gains::new(job.model, AS_IT_IS, verdict, &[]),
             false => Gains::new(job.model, heading(verdict, &helping), verdict, &helping),
         };
-        let too_little = too_little(verdict, &helping).filter(|_| !has_motors(job.model));
+        let too_little =
+            lacking.filter(|_| !has_motors(job.model)).map(|people| too_little(people, &helping, two_tried));
         let notes = too_little.into_iter().chain(notes(verdict, &helping, &tried, &not_tried)).collect();
         Self { helping, not_tried, gains, largest: None, notes }
+    }
+
+    /// Of a job whose changes were not tried to their end: what was found until then may not be what helps most.
+    pub fn broken_off() -> Self {
+        let note = "Changes of the job were not tried to their end, as the program was interrupted.";
+        Self { notes: vec![note.to_owned()], ..Self::default() }
+    }
+
+    /// Of a job that holds with reserve: the sentence that nothing needs to change, beside the time that the job lasts.
+    fn of_reserve(verdict: &Verdict, job: &Job<'_>) -> Self {
+        if verdict.hardest.is_none() {
+            return Self::default();
+        }
+        let judged = verdict.lines.iter().any(|line| line.name == Line::HAZARD);
+        let about = match (has_motors(job.model), judged) {
+            (true, _) => "",
+            (false, true) => " for muscles and ligaments",
+            (false, false) => " for muscles",
+        };
+        // Where no time is asked, weaker people may tire, and nobody knows whether that is too early.
+        let who = match (verdict.asked, verdict.least) {
+            (None, Some(least)) if least < A_DAY => " of people of mean strength",
+            _ => "",
+        };
+        let comma = if about.is_empty() { "" } else { "," };
+        let time = verdict.asked.map(|asked| format!(" in the {} asked{comma}", asked_in_words(asked)));
+        let note = format!("{NOTHING}{}{about}{who}.", time.unwrap_or_default());
+        Self { gains: Gains::new(job.model, AS_IT_IS, verdict, &[]), notes: vec![note], ..Self::default() }
     }
 }
 
@@ -119,17 +149,42 @@ fn notes(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tried:
         _ if hazard_stays(verdict, helping) => Some(format!("No change that was tried ends every hazard.{others}")),
         _ => None,
     };
-    let left = (!not_tried.is_empty())
-        .then(|| format!("Not tried, as the solver steps for trials were used up: {}.", not_tried.join("; ")));
+    let left =
+        (!not_tried.is_empty()).then(|| format!("Not calculated, to keep the answer quick: {}.", not_tried.join("; ")));
     of_all.into_iter().chain(left).collect()
 }
 
-/// Says that no change that helps lets people go on for the asked time: those of mean strength, or only weaker ones.
-fn too_little(verdict: &Verdict, helping: &[Suggestion]) -> Option<String> {
+/// The people whom no change that helps lets go on for the asked time: those of mean strength, or only weaker ones.
+fn lacking(verdict: &Verdict, helping: &[Suggestion]) -> Option<&'static str> {
     let asked = helping.first()?.asked?;
     let enough = |one: &Suggestion| one.kind == VerdictKind::Holds;
     let for_weaker = |one: &Suggestion| one.least.is_none_or(|least| one.reaches(least));
-    let people = if helping.iter().any(enough) { "weaker people" } else { "people of mean strength" };
+    let people = if helping.iter().any(enough) { WEAKER_PEOPLE } else { "people of mean strength" };
     let lacks = !helping.iter().any(for_weaker) && verdict.least.is_none_or(|least| least < asked);
-    lacks.then(|| format!("No single change that was tried suffices for {people}."))
+    lacks.then_some(people)
+}
+
+/// Says that no single change suffices for these people, and whether two at once do, where these were tried.
+fn too_little(people: &str, helping: &[Suggestion], two_tried: bool) -> String {
+    let enough =
+        |one: &&Suggestion| if people == WEAKER_PEOPLE { one.suffices() } else { one.kind == VerdictKind::Holds };
+    match (two_tried, helping.iter().filter(|one| one.both).any(|one| enough(&one))) {
+        (false, _) => format!("No single change that was tried suffices for {people}."),
+        (true, true) => format!("No single change that was tried suffices for {people}; two at once do."),
+        (true, false) => {
+            format!("No change that was tried suffices for {people}, alone or in the pairs that were tried.")
+        }
+    }
+}
+
+/// The changes that help most, and after them those of most promise, two at a time, as far as they go together: those that are tried where
+/// no single one suffices.
+fn pairs(job: &Job<'_>, helping: &[Suggestion], changes: &[Change]) -> Vec<Change> {
+    let change = |one: &Suggestion| changes.iter().find(|change| change.in_words(job) == one.change);
+    let mut best: Vec<&Change> = helping.iter().filter_map(change).collect();
+    let others: Vec<&Change> = changes.iter().filter(|change| !best.contains(change)).collect();
+    best.extend(others);
+    let later = |(k, first): (usize, _)| best[k + 1..].iter().map(move |second| (first, second));
+    let two = best.iter().enumerate().flat_map(later).filter_map(|(first, second): (&&Change, _)| first.with(second));
+    two.take(MOST_PAIRS).collect()
 }

@@ -116,6 +116,7 @@ fn suggestion(verdict: &Verdict, asked: f64, (first, longest): (f64, f64), least
         hands: verdict.hands.len(),
         load: verdict.hardest.map(|group| group.load),
         lighter: false,
+        both: false,
     }
 }
 

@@ -3,8 +3,9 @@
 use super::change::Change;
 use crate::verdict::Verdict;
 
-/// A budget is at least so many solver steps: about fifteen seconds on one core, enough for all changes of most jobs of minutes. Assumed.
-pub const LEAST_BUDGET: usize = 100_000;
+/// A budget is at least so many solver steps: about twenty seconds on one core, enough for all changes of most
+/// jobs of minutes and for two pairs of them. Assumed.
+pub const LEAST_BUDGET: usize = 150_000;
 /// A budget is so many times the solver steps of the job itself: on two cores, trials of a long job take about as long as the job. Assumed.
 pub const BUDGET_FACTOR: usize = 2;
 
@@ -39,6 +40,9 @@ pub(super) fn within(budget: Budget, changes: &[Change], trial: impl Fn(&Change)
     let (mut trials, mut used) = (vec![], 0);
     let trial = &trial;
     for part in changes.chunks(budget.threads.max(1)) {
+        if used >= budget.steps {
+            return trials;
+        }
         let outcomes: Vec<Trial> = std::thread::scope(|scope| {
             let runs: Vec<_> = part.iter().map(|change| scope.spawn(move || trial(change))).collect();
             // A change whose trial ends in a panic is none that helps.
@@ -50,9 +54,6 @@ pub(super) fn within(budget: Budget, changes: &[Change], trial: impl Fn(&Change)
             }
             used += outcome.steps;
             trials.push(outcome);
-        }
-        if used >= budget.steps {
-            return trials;
         }
     }
     trials

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::Support;
-use crate::equilibria::{Mirror, Search};
+use super::job::Job;
+use super::resting_hand::RestingHand;
+use crate::equilibria::Mirror;
 use crate::hybrid::Strategy;
 use crate::joint_torques::Hazard;
 use crate::kinematics::Kinematics;
@@ -41,6 +42,10 @@ pub enum Change {
     Strategy(Strategy),
     /// Right and left change places at the start: the feet stand the other way round.
     OtherFoot,
+    /// A free hand may be put down to rest.
+    Hand(RestingHand),
+    /// Two changes at once.
+    Both(Box<[Change; 2]>),
 }
 
 /// Another angle of a coordinate.
@@ -52,58 +57,6 @@ pub struct JointAngle {
     pub before: f64,
     /// The angle that is asked for, rad.
     pub angle: f64,
-}
-
-/// The parts of a job that changes concern.
-#[derive(Clone, Debug)]
-pub struct Job<'a> {
-    /// The body.
-    pub model: &'a Model,
-    /// Posture of the body at the start.
-    pub start: &'a Posture,
-    /// The supports that carry it, as far as they are known.
-    pub supports: &'a [Support],
-    /// Tasks, the most important first.
-    pub levels: Vec<&'a PriorityLevel>,
-    /// The loads at the start, and those of every event that changes them.
-    pub loads: Vec<&'a [Load]>,
-    /// The time that is asked for, s.
-    pub asked: Option<f64>,
-    /// The strategy of the whole body; `None` where there are several, and where nobody seeks relief.
-    pub strategy: Option<Strategy>,
-}
-
-impl<'a> From<&'a Scenario> for Job<'a> {
-    fn from(scenario: &'a Scenario) -> Self {
-        let kind = scenario.strategy.kind;
-        let is_one = scenario.strategies.iter().all(|strategy| *strategy == kind)
-            && scenario.events.iter().all(|event| event.strategies.is_none());
-        Self {
-            model: &scenario.model,
-            start: &scenario.start,
-            supports: &scenario.supports,
-            levels: scenario.tasks.iter().map(|task| &task.goal).collect(),
-            loads: std::iter::once(scenario.loads.as_slice())
-                .chain(scenario.events.iter().filter_map(|event| event.loads.as_deref()))
-                .collect(),
-            asked: Some(scenario.run.end()),
-            strategy: is_one.then_some(kind),
-        }
-    }
-}
-
-impl<'a> From<&Search<'a>> for Job<'a> {
-    fn from(search: &Search<'a>) -> Self {
-        Self {
-            model: search.model,
-            start: search.start,
-            supports: search.supports,
-            levels: search.goals.iter().collect(),
-            loads: vec![search.loads],
-            asked: None,
-            strategy: None,
-        }
-    }
 }
 
 /// The changes that make sense for a job that ends in these hazards, in a fixed order.
@@ -130,37 +83,19 @@ pub fn changes(job: &Job<'_>, hazards: &[Hazard]) -> Vec<Change> {
         })
     }));
     changes.extend(job.feet().map(|_| Change::OtherFoot));
+    // Only a run puts a hand down.
+    if job.asked.is_some() {
+        changes.extend(RestingHand::all(job).into_iter().map(Change::Hand));
+    }
     changes
 }
 
 impl Job<'_> {
-    /// Segments that carry nothing and are asked to a place, these places, ground, m, and the axes on which they are asked.
-    pub(super) fn targets(&self) -> Vec<(usize, Vector3<f64>, [bool; 3])> {
-        let tasks = self.levels.iter().filter(|level| !level.hard).flat_map(|level| &level.tasks);
-        let target = |task: &Task| match task {
-            Task::Point(point) => Some((point.segment, point.target, point.axes)),
-            Task::Placement(placement) => Some((placement.segment, placement.target.translation.vector, [true; 3])),
-            _ => None,
-        };
-        tasks.filter_map(target).filter(|(segment, ..)| !self.carries(*segment)).collect()
-    }
-
     /// The mean of the targets, so that two hands come nearer alike, ground, m.
-    fn middle_of_targets(&self) -> Option<Vector3<f64>> {
+    pub(super) fn middle_of_targets(&self) -> Option<Vector3<f64>> {
         let targets = self.targets();
         let sum: Vector3<f64> = targets.iter().map(|(_, target, _)| target).sum();
         (!targets.is_empty()).then(|| sum / targets.len() as f64)
-    }
-
-    /// Upward, of length 1; `None` without gravity.
-    pub(super) fn up(&self) -> Option<Vector3<f64>> {
-        (-self.model.gravity()).try_normalize(1e-9)
-    }
-
-    /// Centre of mass at the start, ground, m.
-    pub(super) fn center_of_mass(&self) -> Option<Vector3<f64>> {
-        let mut kinematics = Kinematics::new(self.model);
-        kinematics.update(self.model, self.start).ok().and_then(|()| kinematics.center_of_mass(self.model))
     }
 
     /// The share of the loads that is tried: four fifths, or less where no hand could hold that. `None` without loads, and where a hand
@@ -188,10 +123,6 @@ impl Job<'_> {
         (!angles.is_empty() && !self.levels.is_empty()).then_some(angles)
     }
 
-    fn carries(&self, segment: usize) -> bool {
-        self.supports.iter().any(|support| support.segment == segment)
-    }
-
     /// The foot that is ahead and the other one, of a body with a mirror image that stands on two segments of both sides alone, one ahead of
     /// the other.
     pub(super) fn feet(&self) -> Option<[String; 2]> {
@@ -213,9 +144,32 @@ impl Job<'_> {
 }
 
 impl Change {
+    /// Whether it makes the loads lighter.
+    pub(super) fn is_lighter(&self) -> bool {
+        match self {
+            Self::Loads(_) => true,
+            Self::Both(two) => two.iter().any(Self::is_lighter),
+            _ => false,
+        }
+    }
+
+    /// Two changes at once; `None` of two loads, two moves along one line, or two of another kind that exclude each other.
+    pub(super) fn with(&self, other: &Self) -> Option<Self> {
+        let go_together = match (self, other) {
+            (Self::Targets(a, _), Self::Targets(b, _)) => a.dot(b).abs() < 0.5 * a.norm() * b.norm(),
+            (Self::Both(_), _) | (_, Self::Both(_)) => false,
+            (Self::Hand(a), Self::Hand(b)) => a.support.segment != b.support.segment,
+            (a, b) => std::mem::discriminant(a) != std::mem::discriminant(b),
+        };
+        go_together.then(|| Self::Both(Box::new([self.clone(), other.clone()])))
+    }
+
     /// The scenario with the change.
     #[must_use]
     pub fn apply(&self, scenario: &Scenario) -> Scenario {
+        if let Self::Both(two) = self {
+            return two[1].apply(&two[0].apply(scenario));
+        }
         let (job, mut changed) = (Job::from(scenario), scenario.clone());
         changed.tasks.iter_mut().for_each(|task| self.apply_to_level(&job, &mut task.goal));
         if let Some((place, goal)) = self.new_level(&job) {
@@ -232,12 +186,19 @@ impl Change {
             changed.strategy.kind = *kind;
             changed.strategies.fill(*kind);
         }
+        if let Self::Hand(hand) = self {
+            changed.rests.push(hand.rest(changed.supports.len()));
+            changed.supports.push(hand.support.clone());
+        }
         changed.start = self.start(&job);
         changed
     }
 
     /// Moves targets, and adds a level where the change asks for angles.
     pub fn apply_to_goals(&self, job: &Job<'_>, goals: &mut Vec<PriorityLevel>) {
+        if let Self::Both(two) = self {
+            return two.iter().for_each(|one| one.apply_to_goals(job, goals));
+        }
         goals.iter_mut().for_each(|level| self.apply_to_level(job, level));
         if let Some((place, level)) = self.new_level(job) {
             goals.insert(place, level);
@@ -257,8 +218,11 @@ impl Change {
         Some((place, Task::Posture(tasks::Posture { target, weights }).into()))
     }
 
-    /// Moves the targets of a level.
+    /// Moves the targets of a level. An arm whose hand may be put down is no longer asked to hang.
     fn apply_to_level(&self, job: &Job<'_>, level: &mut PriorityLevel) {
+        if let Self::Hand(hand) = self {
+            level.tasks.retain(|task| !(task.hangs(job.model) && hand.is_moved_by(job.model, task)));
+        }
         let Self::Targets(by, _) = self else { return };
         for task in level.tasks.iter_mut().filter(|_| !level.hard) {
             match task {
@@ -274,7 +238,11 @@ impl Change {
 
     /// Makes loads lighter.
     pub fn apply_to_loads(&self, loads: &mut [Load]) {
-        let Self::Loads(share) = self else { return };
+        let share = match self {
+            Self::Loads(share) => share,
+            Self::Both(two) => return two.iter().for_each(|one| one.apply_to_loads(loads)),
+            _ => return,
+        };
         for load in loads {
             match &mut load.kind {
                 LoadKind::Weight(mass) => *mass *= share,
@@ -285,6 +253,9 @@ impl Change {
 
     /// The start with the change.
     pub fn start(&self, job: &Job<'_>) -> Posture {
+        if let Self::Both(two) = self {
+            return two[usize::from(two[1] == Self::OtherFoot)].start(job);
+        }
         let mirror = if matches!(self, Self::OtherFoot) { Mirror::of(job.model) } else { None };
         mirror.map_or_else(|| job.start.clone(), |mirror| legs_of(job.model, job.start, &mirror.posture(job.start)))
     }

@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::verdict::{A_DAY, Verdict, VerdictKind, has_motors, how_long};
 
 /// Names of the columns of times.
-const OF_PEOPLE: [&str; 2] = ["lasts (mean strength)", "lasts (weaker people, one in six)"];
+const OF_PEOPLE: [&str; 2] = ["lasts (mean strength)", "lasts (weaker people, the weakest sixth)"];
 
 /// Said of hazards and of the grip of a body that falls.
 const NOT_JUDGED: &str = "not judged";

@@ -7,7 +7,8 @@
 //! then the greatest load that held is told as a lower bound.
 
 use super::budget::{Budget, Trial};
-use super::change::{Change, Job};
+use super::change::Change;
+use super::job::Job;
 use crate::verdict::{Amount, MOST_AMOUNTS, VerdictKind, amounts, amounts_in_words, has_motors, how_long};
 
 /// Loads of one decade: 1.00, 1.05, ... 1.95, then 2.0, 2.1, ... 9.9.
@@ -156,7 +157,7 @@ impl LargestLoad {
         })
     }
 
-    /// `12 kg (the job has 15 kg) can be held for the 60 s asked by a person of mean strength, 9.5 kg by weaker people (one in six)`, by
+    /// `12 kg (the job has 15 kg) can be held for the 60 s asked by a person of mean strength, 9.5 kg by weaker people (the weakest sixth)`, by
     /// muscles and grip.
     pub fn in_words(&self) -> String {
         let amounts = &self.amounts[..self.amounts.len().min(MOST_AMOUNTS)];
@@ -180,7 +181,7 @@ impl LargestLoad {
         };
         let people = "by a person of mean strength";
         format!(
-            "{head} {people}, {weaker} by weaker people (one in six); hazards for ligaments and discs are not counted"
+            "{head} {people}, {weaker} by weaker people (the weakest sixth); hazards for ligaments and discs are not counted"
         )
     }
 

@@ -1,7 +1,9 @@
 //! Orders changes by their promise: the verdict on a posture near the present one, found by few solver steps.
 
-use super::change::{Change, Job};
+use super::change::Change;
+use super::job::Job;
 use crate::assessment::{AssessSettings, assess};
+use crate::contact::{Place, Support};
 use crate::equilibria::{Aim, Search};
 use crate::posture::Posture;
 use crate::posture_solver::{Engine, Options};
@@ -20,13 +22,14 @@ pub fn by_promise(scenario: &Scenario, summary: &Summary, changes: Vec<Change>) 
     let end = Scenario { start: Posture::new(values), ..scenario.clone() };
     let goals: Vec<PriorityLevel> = end.tasks.iter().map(|task| task.goal.clone()).collect();
     let locked: Vec<usize> = end.locked_rates().collect();
+    let supports: Vec<Support> = summary.in_use.iter().map(|&number| end.supports[number].clone()).collect();
     by_promise_of_search(
         &Search {
             model: &end.model,
             start: &end.start,
-            supports: &end.supports,
+            supports: &supports,
             goals: &goals,
-            limits: &end.limits,
+            limits: &end.limits_with(&summary.in_use),
             loads: &end.loads,
             locked: &locked,
             most_work: usize::MAX,
@@ -70,20 +73,28 @@ fn glance(search: &Search<'_>, change: &Change) -> Option<Verdict> {
     let (start, mut goals, mut loads) = (change.start(&job), search.goals.to_vec(), search.loads.to_vec());
     change.apply_to_goals(&job, &mut goals);
     change.apply_to_loads(&mut loads);
-    let (mut posture, mut missed) = (start, vec![]);
+    let (mut posture, mut missed, mut supports) = (start, vec![], search.supports.to_vec());
     if !search.supports.is_empty() || !goals.is_empty() {
         let options =
             Options { max_step: GLANCE_STEP, max_steps: GLANCE_STEPS, local_minima: 0, ..Options::least_effort() };
-        let (model, supports) = (search.model, search.supports.to_vec());
-        let mut engine = Engine::with_supports(model, &posture, supports, goals.clone(), &loads, options).ok()?;
+        let model = search.model;
+        let mut levels = goals.clone();
+        if let Change::Hand(hand) = change {
+            levels.splice(0..0, hand.rest(0).lies(&hand.support).map(PriorityLevel::from));
+        }
+        let above = levels.len() - goals.len();
+        let mut engine = Engine::with_supports(model, &posture, supports.clone(), levels, &loads, options).ok()?;
         search.locked.iter().for_each(|&rate| engine.lock(rate));
         search.limits.iter().try_for_each(|task: &Task| engine.limit(task.clone())).ok()?;
         let solved = engine.solve(&posture).ok()?;
-        missed =
-            Missed::of_levels(model, &solved.posture, goals.iter().zip(solved.levels.iter().map(|level| level.length)));
+        let errors = solved.levels.iter().skip(above).map(|level| level.length);
+        missed = Missed::of_levels(model, &solved.posture, goals.iter().zip(errors));
         posture = solved.posture;
+        if let Change::Hand(hand) = change {
+            supports.push(Support { place: Place::Fixed, ..hand.support.clone() });
+        }
     }
-    let settings = AssessSettings { supports: search.supports.to_vec(), ..AssessSettings::default() };
+    let settings = AssessSettings { supports, ..AssessSettings::default() };
     let held = [(0.0, posture)];
     let found = assess(search.model, &held, |_, _, all| all.extend_from_slice(&loads), &settings, |_| {}).ok()?;
     let hands = HandLoad::all(search.model, &loads);

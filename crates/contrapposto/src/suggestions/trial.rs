@@ -1,7 +1,8 @@
 //! Tries changes of a job, and says what they give.
 
 use super::budget::Trial;
-use super::change::{Change, Job};
+use super::change::Change;
+use super::job::Job;
 use crate::equilibria::{Search, SearchError, equilibria};
 use crate::model::Model;
 use crate::posture_solver::Options;
@@ -33,8 +34,10 @@ pub struct Suggestion {
     pub hands: usize,
     /// Load of the hardest worked group.
     pub load: Option<f64>,
-    /// The change is less load.
+    /// The change is less load, or less load and another change.
     pub lighter: bool,
+    /// Two changes at once.
+    pub both: bool,
 }
 
 /// Runs a scenario with a change in one thread until a group needs more than its strength or fails, or a target is missed, or to its end, and judges
@@ -117,13 +120,19 @@ impl Suggestion {
             hazard: Some(hazards_in_words(job.model, verdict)),
             hands: verdict.hands.len(),
             load: verdict.hardest.map(|group| group.load),
-            lighter: matches!(change, Change::Loads(_)),
+            lighter: change.is_lighter(),
+            both: matches!(change, Change::Both(_)),
         }
     }
 
     /// Whether people with that least time, s, reach the asked one; where none is asked nobody does.
     pub(super) fn reaches(&self, least: f64) -> bool {
         self.asked.is_some_and(|asked| least >= asked)
+    }
+
+    /// Whether weaker people reach the asked time.
+    pub(super) fn suffices(&self) -> bool {
+        self.kind == VerdictKind::Holds && self.reaches(times(self.seconds, self.least).1)
     }
 
     /// Number of hazards and of hands with much weight.
@@ -154,9 +163,10 @@ impl Suggestion {
     }
 
     /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards and
-    /// hands with much weight or for longer. A change with which weaker people no longer reach the asked time does not help,
-    /// nor does less load with which somebody holds out for less time: the search has ended in another posture. Of those that are equally safe the
-    /// ones come first with which weaker people reach the asked time.
+    /// hands with much weight or for longer. A change with which weaker people no longer reach the asked time does not help, nor does one with which
+    /// people of mean strength hold out for less time, unless it is safer or weaker people reach the asked time with it, nor does
+    /// less load with which somebody holds out for less time: the search has ended in another posture. Of those that are equally safe the
+    /// ones come first with which weaker people reach the asked time. Two changes at once help where they help more than each single one.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
         let (_, least_before) = times(verdict.seconds, verdict.least);
         let keeps = |one: &Self| !one.reaches(least_before) || one.reaches(times(one.seconds, one.least).1);
@@ -164,10 +174,12 @@ impl Suggestion {
         let equally_safe = |one: &Self| one.risks() == verdict.risks();
         let better = |one: &Self| safer(one) || equally_safe(one) && one.is_longer(verdict);
         let another_posture = |one: &Self| one.lighter && one.shortens(verdict).contains(&true);
+        let at_a_cost = |one: &Self| one.shortens(verdict)[0] && !safer(one) && !one.suffices();
         let helps = |one: &Self| {
             one.kind.is_done()
                 && (one.kind > verdict.kind || one.kind == verdict.kind && better(one) && keeps(one))
                 && !another_posture(one)
+                && !at_a_cost(one)
         };
         all.retain(helps);
         all.sort_by(|a, b| {
@@ -180,6 +192,11 @@ impl Suggestion {
                 .then(time_b.total_cmp(&time_a))
                 .then(least_b.total_cmp(&least_a))
                 .then(load)
+        });
+        let (mut place, single) = (0, all.iter().position(|one| !one.both).unwrap_or(all.len()));
+        all.retain(|one| {
+            place += 1;
+            !one.both || place <= single
         });
         all
     }

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::change::{Change, Job, JointAngle};
+use super::change::{Change, JointAngle};
+use super::job::Job;
 use crate::hybrid::Strategy;
 use crate::joint_torques::posture_in_words;
 use crate::model::plain_name;
@@ -19,7 +20,7 @@ struct Moved {
 }
 
 impl Change {
-    /// `target of right hand 10 cm lower (height 1.85 m instead of 1.95 m)`, `20 % less load (2.4 kg instead of 3 kg)`.
+    /// `right hand 10 cm lower (height 1.85 m instead of 1.95 m)`, `20 % less load (2.4 kg instead of 3 kg)`.
     pub fn in_words(&self, job: &Job<'_>) -> String {
         match self {
             Self::Targets(by, how) => {
@@ -30,8 +31,7 @@ impl Change {
                         names.push(name);
                     }
                 }
-                let target = if names.len() == 1 { "target" } else { "targets" };
-                format!("{target} of {} {how}{}", names.join(" and "), moved_in_words(job, by).unwrap_or_default())
+                format!("{} {how}{}", names.join(" and "), moved_in_words(job, by).unwrap_or_default())
             }
             Self::Joints(angles) => {
                 let coordinates = job.model.coordinates();
@@ -51,6 +51,11 @@ impl Change {
             Self::Strategy(Strategy::Passive) => {
                 "tired joints left to lean on ligaments instead of moving back to the middle of their range".to_owned()
             }
+            Self::Hand(hand) => {
+                let name = plain_name(&job.model.segments()[hand.support.segment].name);
+                format!("{name} put down to rest when something is tired ({:.2}\u{a0}m high)", hand.height)
+            }
+            Self::Both(two) => two.each_ref().map(|one| one.in_words(job)).join(" and "),
             Self::OtherFoot => match job.feet() {
                 Some([ahead, behind]) => format!("feet exchanged: the {behind} ahead instead of the {ahead}"),
                 None => "the other foot ahead".to_owned(),
@@ -59,8 +64,8 @@ impl Change {
     }
 }
 
-/// ` (height 1.85 m instead of 1.95 m)`, or ` (level distance from the middle of the body 0.35 m instead of 0.45 m)`, which is its centre of mass
-/// at the start.
+/// ` (height 1.85 m instead of 1.95 m)`, or ` (horizontal distance from the middle of the body 0.35 m instead of 0.45 m)`, which is its centre of mass
+/// at the start; of several targets that of their middle.
 fn moved_in_words(job: &Job<'_>, by: &Vector3<f64>) -> Option<String> {
     let up = job.up()?;
     let is_level = by.dot(&up).abs() < 0.5 * by.norm();
@@ -71,10 +76,18 @@ fn moved_in_words(job: &Job<'_>, by: &Vector3<f64>) -> Option<String> {
     };
     let counts = |k: usize| if is_level { up[k].abs() < 1.0 - NO_PART } else { up[k].abs() > NO_PART };
     let mut all: Vec<Moved> = vec![];
-    for (segment, target, axes) in job.targets() {
-        if (0..3).any(|k| counts(k) && !axes[k]) {
-            return None;
-        }
+    let targets = job.targets();
+    if targets.iter().any(|(.., axes)| (0..3).any(|k| counts(k) && !axes[k])) {
+        return None;
+    }
+    if is_level && targets.len() > 1 {
+        // Two hands come nearer by the same step, each along another line.
+        let middle = job.middle_of_targets()?;
+        let [before, after] = [middle, middle + by].map(of);
+        let of_middle = "horizontal distance of their middle from the middle of the body";
+        return Some(format!(" ({of_middle} {after:.2}\u{a0}m instead of {before:.2}\u{a0}m)"));
+    }
+    for (segment, target, _) in targets {
         let segment = plain_name(&job.model.segments()[segment].name);
         let [before, after] =
             [target, target + by].map(|place| format!("{:.2}\u{a0}m", of(place)).replace('-', "\u{2212}"));
@@ -89,7 +102,7 @@ fn moved_in_words(job: &Job<'_>, by: &Vector3<f64>) -> Option<String> {
     };
     let values = values.join(", ");
     Some(match is_level {
-        true => format!(" (level distance from the middle of the body {values})"),
+        true => format!(" (horizontal distance from the middle of the body {values})"),
         false => format!(" (height {values})"),
     })
 }

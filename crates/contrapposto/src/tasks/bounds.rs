@@ -12,6 +12,9 @@ use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use hierarchical_least_squares::Level;
 
+/// Greatest distance of a cosine from 1 at which two directions count as one.
+const SAME: f64 = 1e-12;
+
 /// Components of points and directions of a segment within limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
@@ -45,6 +48,12 @@ impl Component {
     /// Whether a direction has to be square to the direction of ground.
     pub(super) fn is_level(&self) -> bool {
         matches!(self.of, Carried::Direction(_)) && self.limits == (0.0, 0.0)
+    }
+
+    /// Whether a direction has to point `down` to within an angle less than 90 degrees.
+    pub(super) fn hangs(&self, down: Vector3<f64>) -> bool {
+        let (lower, upper) = self.limits;
+        matches!(self.of, Carried::Direction(_)) && lower > 0.0 && upper >= 1.0 && self.along.dot(&down) > 1.0 - SAME
     }
 
     /// The component in the posture of `body`.

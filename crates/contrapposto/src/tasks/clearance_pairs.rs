@@ -47,6 +47,21 @@ impl Clearance {
         }
         (!pairs.is_empty()).then_some(Self { pairs, margin: MARGIN, activation: ACTIVATION })
     }
+
+    /// The same without the pairs of things and the `carrying` segments, and without those of blocks and neighbours of these segments.
+    #[must_use]
+    pub fn with_carrying(&self, model: &Model, carrying: &[usize]) -> Self {
+        let part_carries = |pair: &ClearancePair| {
+            let neighbour = || carrying.iter().any(|c| joint(model, pair.part.segment, *c).is_some());
+            match pair.other {
+                Obstacle::Part(_) => false,
+                Obstacle::Thing(thing) => {
+                    carrying.contains(&pair.part.segment) || (matches!(thing, Thing::Block { .. }) && neighbour())
+                }
+            }
+        };
+        Self { pairs: self.pairs.iter().filter(|pair| !part_carries(pair)).copied().collect(), ..self.clone() }
+    }
 }
 
 /// Spheres at the ends of `parts`, none of which carries the body, for rows against a half-space: of ends in one place the largest, and

@@ -35,6 +35,7 @@ pub(crate) use effort::{for_each_angle_slope, share_of_strength};
 pub(crate) use error_hessian::ErrorHessian;
 pub use look_at::{LookAt, LookAtGoal};
 pub use orientation::Orientation;
+pub(crate) use place::within_region;
 pub use place::{free_place, held_place, turned_since};
 pub use placement::Placement;
 pub use point::Point;

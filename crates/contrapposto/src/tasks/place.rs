@@ -48,16 +48,9 @@ pub fn turned_since(support: &Support, model: &Model, start: &Kinematics, now: &
 /// The inequalities of a support whose place is free: the middle of its patch in its region, its turn about the normal within its
 /// limits. `None` for a support that stays.
 pub fn free_place(support: &Support, model: &Model, kinematics: &Kinematics) -> Option<Task> {
-    let Place::Free(Region { corners, turn: (least, greatest) }) = &support.place else { return None };
+    let Place::Free(Region { turn: (least, greatest), .. }) = &support.place else { return None };
     let segment = support.segment;
     let rotation = kinematics.placement(model, segment).rotation;
-    let middle = Carried::Point(support.middle());
-    let edges = half_planes(corners, -support.normal).into_iter();
-    let inside = edges.map(|edge| Component {
-        of: middle,
-        along: Unit::new_normalize(edge.normal),
-        limits: (f64::NEG_INFINITY, edge.offset),
-    });
     let [normal, ahead, _] = support.axes().map(Unit::new_normalize);
     let carried = Carried::Direction(Unit::new_normalize(rotation.inverse() * ahead.into_inner()));
     // Square to the direction ahead after a turn: the component along it is the sine of what is left of the turn.
@@ -68,5 +61,19 @@ pub fn free_place(support: &Support, model: &Model, kinematics: &Kinematics) -> 
         Component { of: carried, along: square(*least), limits: (0.0, f64::INFINITY) },
         Component { of: carried, along: square(*greatest), limits: (f64::NEG_INFINITY, 0.0) },
     ];
-    Some(Task::Bounds(Bounds { segment, components: inside.chain(turned).collect() }))
+    Some(Task::Bounds(Bounds { segment, components: within_region(support).chain(turned).collect() }))
+}
+
+/// The inequalities of the region of a support whose place is free; none for one that stays.
+pub(crate) fn within_region(support: &Support) -> impl Iterator<Item = Component> {
+    let corners = match &support.place {
+        Place::Free(region) => region.corners.as_slice(),
+        Place::Fixed => &[],
+    };
+    let middle = Carried::Point(support.middle());
+    half_planes(corners, -support.normal).into_iter().map(move |edge| Component {
+        of: middle,
+        along: Unit::new_normalize(edge.normal),
+        limits: (f64::NEG_INFINITY, edge.offset),
+    })
 }

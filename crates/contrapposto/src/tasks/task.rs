@@ -57,6 +57,19 @@ impl Task {
         }
     }
 
+    /// Whether the task wants a place, a rotation or a direction of a segment.
+    pub fn wants(&self, segment: usize) -> bool {
+        match self {
+            Self::Point(task) => task.segment == segment,
+            Self::Orientation(task) => task.segment == segment,
+            Self::Placement(task) => task.segment == segment,
+            Self::LookAt(task) => task.segment == segment,
+            Self::Bounds(task) => task.segment == segment,
+            Self::Distance(task) => task.a.0 == segment || task.b.0 == segment,
+            Self::Posture(_) | Self::CenterOfMass(_) | Self::Clearance(_) | Self::Effort(_) => false,
+        }
+    }
+
     /// Number of rows.
     pub fn rows(&self) -> usize {
         match self {
@@ -102,7 +115,8 @@ impl Task {
     }
 
     /// The kind and the segments that it moves, e.g. `point hand_r`; `head upright` for a direction of the head against gravity, `head
-    /// level` for one that has to be square to another. The task must have passed [`Task::check`].
+    /// level` for one that has to be square to another, `humerus_l hangs` for one that has to point down. The task must have passed
+    /// [`Task::check`].
     pub fn label(&self, model: &Model) -> String {
         let name = |segment: usize| &model.segments()[segment].name;
         let kind = self.kind();
@@ -114,6 +128,7 @@ impl Task {
             Self::Bounds(Bounds { segment, components }) if components.iter().all(Component::is_level) => {
                 format!("{} level", name(*segment))
             }
+            Self::Bounds(Bounds { segment, .. }) if self.hangs(model) => format!("{} hangs", name(*segment)),
             Self::Point(Point { segment, .. })
             | Self::Orientation(Orientation { segment, .. })
             | Self::Placement(Placement { segment, .. })
@@ -124,8 +139,15 @@ impl Task {
         }
     }
 
+    /// Whether the task asks nothing but that a segment points down, to within an angle less than 90 degrees: a limb without work.
+    pub fn hangs(&self, model: &Model) -> bool {
+        let Self::Bounds(Bounds { components, .. }) = self else { return false };
+        let down = model.gravity().try_normalize(0.0);
+        down.is_some_and(|down| components.iter().all(|component| component.hangs(down)))
+    }
+
     /// Whether the task asks something of a segment by itself: of its place, its turn, or of a coordinate of its joint.
-    pub(crate) fn concerns(&self, model: &Model, segment: usize) -> bool {
+    pub fn concerns(&self, model: &Model, segment: usize) -> bool {
         match self {
             Self::Point(Point { segment: of, .. })
             | Self::Orientation(Orientation { segment: of, .. })

@@ -30,6 +30,17 @@ impl Thing {
         Self::HalfSpace { normal: Vector3::y(), offset: height }
     }
 
+    /// Whether a point of ground is inside the thing.
+    pub(crate) fn holds(&self, point: Vector3<f64>) -> bool {
+        match self {
+            Self::HalfSpace { normal, offset } => normal.dot(&point) <= *offset,
+            Self::Block { placement, half } => {
+                let inside = placement.inverse_transform_point(&point.into());
+                (0..3).all(|axis| inside[axis].abs() <= half[axis])
+            }
+        }
+    }
+
     pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
         match self {
             Self::HalfSpace { normal, offset } => {

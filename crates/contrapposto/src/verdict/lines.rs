@@ -1,6 +1,6 @@
 //! Says what stands below the sentence of a verdict: a line for each finding, with its name.
 
-use super::words::{A_DAY, enumerated, has_no_strength, how_long, in_words, percent, slip_in_words};
+use super::words::{A_DAY, asked_in_words, enumerated, has_no_strength, how_long, in_words, percent, slip_in_words};
 use super::{Failure, Findings, HandLoad, TIRED, VerdictKind, Who, muscles_or_motors};
 use crate::contact::Slip;
 use crate::joint_torques::{GroupLoad, Hazard, judged_parts};
@@ -8,6 +8,13 @@ use crate::model::{Model, movements_in_words};
 
 /// Load below which no muscle counts as working: half of the last digit that is shown. Derived.
 const NO_WORK: f64 = 0.005;
+
+/// A moment before this one, s, is the start. Assumed.
+const AT_ONCE: f64 = 1.0;
+/// So is one before this share of the asked time, if that is less. Assumed.
+const AT_ONCE_SHARE: f64 = 0.1;
+/// The greatest fatigue that is told of a group that has not failed: 100 % is failure.
+const NOT_YET: f64 = 0.99;
 
 /// Said beside hazards that are known, and where none is.
 const ALSO_NOT_JUDGED: &str = "discs and discomfort are not judged";
@@ -69,7 +76,7 @@ impl Findings {
         self.hardest.map(|(group, _)| group).filter(|group| group.load >= NO_WORK)
     }
 
-    /// `right shoulder flexion (16 % of its strength), after about 6.6 min in all if the posture of the end is held on (...)`; of a job that is not held
+    /// `right shoulder flexion (16 % of its strength), after about 6.6 min, counted from the start, if the last posture is kept (...)`; of a job that is not held
     /// to its end `..., after 7.1 min (...)`.
     fn fails_first(&self, model: &Model, kind: VerdictKind) -> Option<String> {
         self.asked?;
@@ -85,28 +92,36 @@ impl Findings {
             }
             let weaker = self.of_weaker_beyond(model).map_or_else(String::new, |weaker| format!("; {weaker}"));
             let on = self.on();
-            return Some(format!("{name} ({load} of its strength), after about {time} in all {on} ({range}){weaker}"));
+            return Some(format!(
+                "{name} ({load} of its strength), after about {time}, counted from the start, {on} ({range}){weaker}"
+            ));
         }
         let Some(Failure { who, range: (least, _), .. }) = self.weakest() else {
             return (!self.later.is_empty()).then(|| format!("no muscle, {}", self.on()));
         };
         let of_weaker = self.of_weaker_beyond(model).unwrap_or_else(|| {
             let (who, least) = (who.name(model), how_long(*least));
-            format!("in weaker people (one in six) {who} within {least}")
+            format!("in weaker people (the weakest sixth) {who} within {least}")
         });
         Some(format!("no muscle of a person of mean strength; {of_weaker}"))
     }
 
-    /// `in weaker people (one in six) right hip extension only after 48.6 min, beyond the 20.0 min asked`; `None` where it fails before, or never.
+    /// `in weaker people (the weakest sixth) right hip extension only after 49 min, beyond the 20 min asked`; `None` where it fails before, or never.
     fn of_weaker_beyond(&self, model: &Model) -> Option<String> {
         let (asked, Failure { who, range: (least, _), .. }) = (self.asked?, self.weakest()?);
-        let (who, after, asked) = (who.name(model), how_long(*least), (*least >= asked).then(|| how_long(asked))?);
-        Some(format!("in weaker people (one in six) {who} only after {after}, beyond the {asked} asked"))
+        let (who, after, asked) =
+            (who.name(model), how_long(*least), (*least >= asked).then(|| asked_in_words(asked))?);
+        let when = if after == asked {
+            format!("shortly after the {asked} asked")
+        } else {
+            format!("only after {after}, beyond the {asked} asked")
+        };
+        Some(format!("in weaker people (the weakest sixth) {who} {when}"))
     }
 
     /// The job after its end.
     fn on(&self) -> &'static str {
-        if self.repeats.is_some() { "if it is repeated on" } else { "if the posture of the end is held on" }
+        if self.repeats.is_some() { "if it is repeated on" } else { "if the last posture is kept" }
     }
 
     /// `right hip extension, 17 % of its strength; it fails later, after about 32 min`, or `..., 17 % of its strength at 7.9 min (11 % at the end)`.
@@ -120,7 +135,9 @@ impl Findings {
             .filter(|_| self.repeats.is_none())
             .zip(own.map(|own| percent(own.who.load)).filter(|end| *end != greatest));
         let end = end.map(|(time, end)| match how_long(time) {
-            _ if time <= 0.0 => format!(" at the start ({end} at the end)"),
+            _ if time < self.asked.map_or(AT_ONCE, |asked| AT_ONCE.min(AT_ONCE_SHARE * asked)) => {
+                format!(" at the start ({end} at the end)")
+            }
             at if self.asked.map(how_long).as_ref() == Some(&at) => {
                 format!(" shortly before the end ({end} at the end)")
             }
@@ -137,19 +154,21 @@ impl Findings {
         Some(format!("{name}, {greatest} of its strength{}{}", end.unwrap_or_default(), fails.unwrap_or_default()))
     }
 
-    /// `right shoulder flexion, 82 % at the end (at 100 % it fails)`.
+    /// `right shoulder flexion, 82 % at the end (at 100 % it fails)`, `..., 100 %, at which it fails`.
     fn most_tired(&self, model: &Model) -> Option<String> {
         let tired = self.tired.filter(|tired| tired.fatigue >= NO_WORK)?;
         let lasts = match (tired.lasts && tired.fatigue > TIRED, self.repeats) {
             (false, _) => "",
             (true, Some(_)) => "; it does not fail, however long it goes on",
-            (true, None) => "; at its load it becomes no more tired",
+            (true, None) => "; under this load it tires no further",
         };
-        Some(format!(
-            "{}, {} at the end (at 100\u{a0}% it fails){lasts}",
-            tired.who.name(model),
-            percent(tired.fatigue)
-        ))
+        let who = tired.who.name(model);
+        Some(match tired.fatigue >= 1.0 {
+            true => format!("{who}, {}, at which it fails", percent(tired.fatigue)),
+            false => {
+                format!("{who}, {} at the end (at 100\u{a0}% it fails){lasts}", percent(tired.fatigue.min(NOT_YET)))
+            }
+        })
     }
 
     /// `at 5.0 min right hip extension would need 130 % of its strength`, of a group that is too weak after another one has failed.

@@ -38,7 +38,7 @@ pub use motors::{has_motors, muscles_or_motors};
 pub use posture::HeldPosture;
 pub(crate) use spread::{failure, laws_and_variation};
 pub use spread::{spread, spread_of_repeats};
-pub(crate) use words::A_DAY;
+pub(crate) use words::{A_DAY, asked_in_words};
 pub use words::{error_in_words, how_long, slip_in_words};
 
 use crate::contact::{Missing, Slip};

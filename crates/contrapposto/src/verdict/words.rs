@@ -2,7 +2,8 @@
 
 use super::missed::unit;
 use super::{
-    Failure, Findings, Missed, Nearest, Verdict, VerdictKind, Who, burden_in_words, has_motors, muscles_or_motors,
+    Failure, Findings, Missed, Nearest, PassedHazard, Verdict, VerdictKind, Who, burden_in_words, has_motors,
+    muscles_or_motors,
 };
 use crate::contact::Slip;
 use crate::model::{Model, plain_group_name, plain_name};
@@ -15,6 +16,8 @@ const LEAST_PART: f64 = 0.05;
 const FAR_TOO_MUCH: f64 = 10.0;
 /// Most coordinates out of range that a sentence names.
 const MOST_DOUBTS: usize = 3;
+/// From here on, s, minutes are said without a decimal: nobody knows them better.
+const WHOLE_MINUTES: f64 = 597.0;
 /// A time from here on, s, is said as no limit: longer than a day.
 pub(crate) const A_DAY: f64 = 86_400.0;
 
@@ -155,11 +158,13 @@ impl Findings {
         let Some(asked) = self.asked.filter(|asked| time < *asked && self.interrupted.is_none()) else {
             return how_long(time);
         };
-        let words = [time, asked].map(how_long);
-        let [time, asked] = if words[0] == words[1] {
-            [time.floor(), asked].map(|seconds| format!("{seconds:.0}\u{a0}s"))
-        } else {
+        let words = [how_long(time), asked_in_words(asked)];
+        let [time, asked] = if words[0] != words[1] {
             words
+        } else if asked >= WHOLE_MINUTES && asked - time >= 6.0 {
+            [(time / 6.0).floor() / 10.0, asked / 60.0].map(|minutes| format!("{minutes:.1}\u{a0}min"))
+        } else {
+            [time.floor(), asked].map(|seconds| format!("{seconds:.0}\u{a0}s"))
         };
         format!("{time} of the {asked} asked")
     }
@@ -170,14 +175,14 @@ impl Findings {
                 .to_owned();
         }
         let head = match self.asked {
-            Some(time) if self.repeats.is_some() => format!("Can be repeated for the {} asked", how_long(time)),
+            Some(time) if self.repeats.is_some() => format!("Can be repeated for the {} asked", asked_in_words(time)),
             Some(time) if self.recorded => format!("Holds through the motion ({})", how_long(time)),
-            Some(time) => format!("Holds through the run ({})", how_long(time)),
+            Some(time) => format!("Can be held for all of the {} asked", asked_in_words(time)),
             None => "Holds without a limit by muscles".to_owned(),
         };
         let reached = self.asked.zip(self.least).is_some_and(|(asked, least)| least >= asked);
         let too = if reached && self.hands.is_empty() && !has_motors(model) {
-            ", also for weaker people (one in six);"
+            ", also for weaker people (the weakest sixth);"
         } else {
             ","
         };
@@ -191,25 +196,30 @@ impl Findings {
         format!("{head}{}.", self.weaker(model).unwrap_or_else(hardest))
     }
 
-    /// `, but in weaker people (one in six) right shoulder flexion fails within 3.9 min`: two of three people lie within the range, one in six below it.
+    /// `, but in weaker people (the weakest sixth) right shoulder flexion fails within 3.9 min`: two of three people lie within the range, one in six below it.
     fn weaker(&self, model: &Model) -> Option<String> {
         let Failure { who, range: (least, _), .. } = match self.asked {
             Some(_) => self.fails_weaker()?,
             None => self.weakest()?,
         };
         let who = who.name(model);
-        Some(if *least > 0.0 {
-            format!(", but in weaker people (one in six) {who} fails within {}", how_long(*least))
+        let near = self.asked.is_some_and(|asked| how_long(asked) == how_long(*least));
+        Some(if near {
+            format!(", but in weaker people (the weakest sixth) {who} fails shortly before the end")
+        } else if *least > 0.0 {
+            format!(", but in weaker people (the weakest sixth) {who} fails within {}", how_long(*least))
         } else {
-            format!(", but weaker people (one in six) are too weak for it ({who})")
+            format!(", but weaker people (the weakest sixth) are too weak for it ({who})")
         })
     }
 
-    /// ` Hazard for ligaments: low back bent forward by 60°.`
+    /// ` Hazard for ligaments: low back bent forward by 60°.`, `... right and left knee hyperextended by 5° for 3.2 min.` where it is over.
     fn hazard(&self, model: &Model) -> Option<String> {
-        let passed = self.passed.iter().map(|passed| &passed.hazard);
-        let list: Vec<String> =
-            self.hazards.iter().chain(passed).map(|hazard| hazard.posture_in_words(model)).collect();
+        let at_end = self.hazards.iter().map(|hazard| hazard.posture_in_words(model));
+        let passed = self.passed.iter().map(|PassedHazard { hazard, seconds, .. }| {
+            format!("{} for {}", hazard.posture_in_words(model), how_long(*seconds))
+        });
+        let list = of_both_sides(&at_end.chain(passed).collect::<Vec<_>>());
         (!list.is_empty()).then(|| format!(" Hazard for ligaments: {}.", enumerated(&list)))
     }
 }
@@ -217,6 +227,17 @@ impl Findings {
 /// No group of the body has a strength.
 pub(super) fn has_no_strength(model: &Model) -> bool {
     model.coordinates().iter().all(|coordinate| coordinate.groups.is_none())
+}
+
+/// `right and left knee ...` for `right knee ...` and `left knee ...` of the same words.
+fn of_both_sides(parts: &[String]) -> Vec<String> {
+    let has = |part: &String| parts.contains(part);
+    let both = |part: &String| match (part.strip_prefix("right "), part.strip_prefix("left ")) {
+        (Some(rest), _) if has(&format!("left {rest}")) => Some(format!("right and left {rest}")),
+        (_, Some(rest)) if has(&format!("right {rest}")) => None,
+        _ => Some(part.clone()),
+    };
+    parts.iter().filter_map(both).collect()
 }
 
 /// `a`, `a and b`, `a, b and c`.
@@ -303,13 +324,32 @@ pub(super) fn percent(share: f64) -> String {
     format!("{:.0}\u{a0}%", 100.0 * share)
 }
 
+/// A time that a job asks for: also one longer than a day has its number.
+pub(crate) fn asked_in_words(seconds: f64) -> String {
+    if seconds < A_DAY { how_long(seconds) } else { format!("{:.0}\u{a0}h", seconds / 3600.0) }
+}
+
 /// `45 s`, `7.5 min`, `12 min`, `6.9 h`, `longer than a day`.
 pub fn how_long(seconds: f64) -> String {
     match seconds {
         _ if seconds < 9.95 => format!("{seconds:.1}\u{a0}s"),
         _ if seconds < 100.0 => format!("{seconds:.0}\u{a0}s"),
-        _ if seconds < 5970.0 => format!("{:.1}\u{a0}min", seconds / 60.0),
+        _ if seconds < WHOLE_MINUTES => format!("{:.1}\u{a0}min", seconds / 60.0),
+        _ if seconds < 5970.0 => format!("{:.0}\u{a0}min", seconds / 60.0),
         _ if seconds < A_DAY => format!("{:.1}\u{a0}h", seconds / 3600.0),
         _ => "longer than a day".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minutes_from_ten_on_have_no_decimal_and_a_time_asked_always_has_its_number() {
+        let shown = [9.9, 9.96, 99.0, 596.0, 597.1, 2941.0, 5971.0, 90_000.0].map(how_long);
+        let expected = ["9.9 s", "10 s", "99 s", "9.9 min", "10 min", "49 min", "1.7 h", "longer than a day"];
+        assert_eq!(shown.map(|text| text.replace('\u{a0}', " ")), expected);
+        assert_eq!([7200.0, 90_000.0].map(asked_in_words), ["2.0\u{a0}h", "25\u{a0}h"]);
     }
 }

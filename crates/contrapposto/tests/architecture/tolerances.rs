@@ -12,7 +12,7 @@ const ROOMS: [&str; 9] =
 pub(super) fn page() -> String {
     let mut page = String::from(
         "# Tolerances and limits of the solvers\n\nA test writes this page from the sources and compares it with the file; to write it anew:\n\
-         `CONTRAPPOSTO_WRITE_DOCS=1 cargo test -p contrapposto --test architecture tolerances`.\n",
+         `CONTRAPPOSTO_WRITE_DOCS=1 cargo test -p contrapposto tolerances`.\n",
     );
     for name in ["hierarchical-least-squares", "contrapposto"] {
         let files = sources(&crates()[name]).into_iter().map(|(source, _)| source);

@@ -1,7 +1,5 @@
 //! Moves postures about the axes of three-axis joints.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use nalgebra::{UnitQuaternion, Vector3};

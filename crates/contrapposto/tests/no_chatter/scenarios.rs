@@ -46,6 +46,7 @@ pub(crate) fn random(random: &mut Random) -> Scenario {
     Scenario {
         title: "random".into(),
         supports: supports(&model, random),
+        rests: vec![],
         tasks: tasks(&model, &start, random),
         loads: loads(&model, random),
         events: events(&model, duration, random),

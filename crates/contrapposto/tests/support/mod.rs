@@ -1,6 +1,4 @@
 //! Random passive curves of every form, shared by the tests of curves and of decisions.
-#![allow(dead_code, unreachable_pub, clippy::print_stdout, clippy::unwrap_used)] // each test uses a part
-
 use contrapposto::passive::{
     CoordinateLimitForce, CoupledTerm, DoubleExponential, End, Form, PassiveCurve, Reshape, RienerEdrich1999, Tabulated,
 };

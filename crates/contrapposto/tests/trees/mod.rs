@@ -1,6 +1,4 @@
 //! Random bodies of every joint kind, driven joints and couplings included, shared by the tests of Jacobians and of tasks.
-#![allow(dead_code, unreachable_pub, clippy::print_stdout, clippy::unwrap_used)] // each test uses a part
-
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::math::Function;
 use contrapposto::model::{

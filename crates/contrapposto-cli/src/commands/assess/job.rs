@@ -230,7 +230,8 @@ impl Job {
             return Advice::default();
         }
         let (supports, loads) = (&settings.supports, if ground.is_none() { vec![held.as_slice()] } else { vec![] });
-        let job = Asked { model, start, supports, levels: vec![], loads, asked: verdict.asked, strategy: None };
+        let (asked, strategy) = (verdict.asked, None);
+        let job = Asked { model, start, supports, limits: &[], rests: vec![], levels: vec![], loads, asked, strategy };
         let all =
             || changes(&job, &verdict.hazards).into_iter().filter(|change| *change != Change::OtherFoot).collect();
         let groups = Worked::in_motion(model, found);

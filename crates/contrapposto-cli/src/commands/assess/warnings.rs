@@ -72,8 +72,8 @@ fn against_ligaments(opened: &SourcedModel, found: &Assessment) -> Option<String
     let groups: Vec<&GroupAssessment> = found.groups.iter().filter(worked).collect();
     (!groups.is_empty()).then(|| {
         format!(
-            "muscles work against the ligaments of their own joint; usually the zero of the angle is offset in the motion, or the joint is \
-             hyperextended: {}",
+            "muscles work more against the passive tissue of their own joint than against loads; usually the zero of the angle is offset in the \
+             motion, the joint is hyperextended, or the model's curves or muscles are stiff at this angle: {}",
             listed(&groups, in_words)
         )
     })

@@ -1,6 +1,7 @@
 //! Carries out a scenario over time.
 
 use contrapposto::simulation::{Fall, Run, ScenarioError, Summary};
+use contrapposto::suggestions::Advice;
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::RunScenario;
 use contrapposto_formats::tissue::fatigue_notes;
@@ -70,7 +71,8 @@ impl Simulated {
         let mut answer = Answer::of_run(scenario, &summary);
         if suggest && go_on() {
             let job = (&summary, under_way.solver_steps());
-            answer.advice = advice_of_run(&answer.verdict, scenario, job, trials, &go_on);
+            let advice = advice_of_run(&answer.verdict, scenario, job, trials, &go_on);
+            answer.advice = if go_on() { advice } else { Advice::broken_off() };
         }
         let muscles = muscles_of_run(scenario, &recording, &summary)?;
         let json = summary_json(scenario, (&summary, muscles.as_ref()), &answer, vec![])?;

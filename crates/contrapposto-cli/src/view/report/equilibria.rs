@@ -20,6 +20,7 @@ use crate::view::scene::Scene;
 use crate::view::scene::hazard::hazards;
 use crate::view::selection::shown;
 use crate::view::stage::Stage;
+use crate::view::text::relax::number_in_words;
 use crate::view::words::{MOST_JOINTS_SHOWN, how_long, list, percent, plain, value};
 
 /// `--figures` of all postures of least effort.
@@ -83,7 +84,8 @@ pub(crate) fn report_of_equilibria(
     let row = |(i, (posture, frame)): (usize, (&RelaxedPosture, &Frame))| {
         let hardest = hardest(model, frame).map(|(name, load)| format!("{name}, {}", percent(load)));
         let effort = format!("{:.4}", posture.relaxed.effort);
-        vec![(i + 1).to_string(), effort, weight(frame, &supports), held_by(posture), hardest.unwrap_or_default()]
+        let number = number_in_words(i, posture.mirrored);
+        vec![number, effort, weight(frame, &supports), held_by(posture), hardest.unwrap_or_default()]
     };
     report.table = Table {
         heading: "Side by side".to_owned(),

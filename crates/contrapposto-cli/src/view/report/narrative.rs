@@ -1,7 +1,7 @@
 //! The words of a run's page: a headline, the reasons, and the few numbers that say most.
 
-use contrapposto::simulation::{FootStep, Scenario, StopReason, Summary};
-use contrapposto::verdict::TIRED;
+use contrapposto::simulation::{FootStep, Scenario, StepKind, StopReason, Summary};
+use contrapposto::verdict::{TIRED, VerdictKind};
 use contrapposto_report::{Figure, Report};
 
 use crate::view::answer::{Answer, group_of_title};
@@ -28,8 +28,9 @@ pub(super) fn write(
     report: &mut Report,
 ) {
     let (Some(first), Some(last)) = (excerpt.frames.first(), excerpt.frames.last()) else { return };
-    // The joint that was relieved; without reliefs that of the title.
-    let of_title = group_of_title(&answer.verdict).filter(|_| excerpt.happened == 0).map(|group| group.coordinate);
+    // The joint that was relieved; without reliefs, and where a group fails, that of the title.
+    let by_title = excerpt.happened == 0 || answer.verdict.kind == VerdictKind::HeldUntil;
+    let of_title = group_of_title(&answer.verdict).filter(|_| by_title).map(|group| group.coordinate);
     let main = of_title.unwrap_or_else(|| main_coordinate(scenario, summary));
     let ligaments = answer.verdict.hazards.first().map_or(main, |hazard| hazard.coordinate);
     let in_hazard = !answer.verdict.hazards.is_empty();
@@ -62,7 +63,10 @@ pub(super) fn write(
 
 /// No muscle group needed relief.
 fn of_rest(seconds: f64) -> String {
-    format!("In {} no muscle of a person of mean strength became so tired that it needed relief.", how_long(seconds))
+    format!(
+        "In {} no muscle of a person of mean strength became so tired that the body moved to relieve it.",
+        how_long(seconds)
+    )
 }
 
 /// Whether muscles that carry the pelvis to a side needed relief.
@@ -116,8 +120,12 @@ impl Narrative<'_> {
             let verb = if self.swept < STAYED { "stayed at" } else { "ended where it began, at" };
             return format!("{name} {verb} {to}: {who} hold {after:.1} N m.");
         }
+        let (now, then) = (format!("{after:.1}"), format!("{before:.1}"));
+        if now == then {
+            return format!("{name} moved from {from} to {to}: {who} hold {now} N m as before.");
+        }
         let verb = if after > before { "more" } else { "less" };
-        format!("{name} moved from {from} to {to}: {who} hold {verb}, {after:.1} N m instead of {before:.1}.")
+        format!("{name} moved from {from} to {to}: {who} hold {verb}, {now} N m instead of {then}.")
     }
 
     /// `the muscles of right hip extension`: the group that works at the end, by the name that rows have for it.
@@ -194,10 +202,14 @@ impl Narrative<'_> {
         let model = &self.scenario.model;
         let support = plain(&model.segments()[self.scenario.supports[step.support].segment].name);
         let ([from_x, _, from_z], [x, _, z]) = step.place;
+        let what = match step.kind {
+            StepKind::Elsewhere => format!("put elsewhere, {:.0} cm away,", 100.0 * (x - from_x).hypot(z - from_z)),
+            StepKind::PutDown => "put down to rest".to_owned(),
+            StepKind::TakenOff => "taken up again".to_owned(),
+        };
         format!(
-            "At {} {support} was put elsewhere, {:.0} cm away, to relieve {}: effort {:.4} before, {:.4} after.",
+            "At {} {support} was {what} to relieve {}: effort {:.4} before, {:.4} after.",
             how_long(step.time.0),
-            100.0 * (x - from_x).hypot(z - from_z),
             plain(&model.coordinates()[step.coordinate].name),
             step.effort.0,
             step.effort.1

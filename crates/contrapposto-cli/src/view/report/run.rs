@@ -2,7 +2,7 @@
 
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::Side;
-use contrapposto::simulation::{FootStep, MuscleOutcome, Scenario, Summary};
+use contrapposto::simulation::{FootStep, MuscleOutcome, Scenario, StepKind, Summary};
 use contrapposto::verdict::{Verdict, VerdictKind};
 use contrapposto_formats::Thing;
 use contrapposto_report::{Entry, List, Moments, Report};
@@ -19,7 +19,7 @@ use crate::view::scene::Scene;
 use crate::view::selection::{main_coordinate, shown};
 use crate::view::stage::{Stage, load_in_words};
 use crate::view::targets::missed_targets;
-use crate::view::words::{how_long, list, plain};
+use crate::view::words::{how_long, list, plain, sentence};
 
 /// The muscles of a run in the moments that its page shows. Nothing is judged while a support is put elsewhere.
 pub(crate) fn muscles_of_run<'a>(
@@ -150,11 +150,15 @@ fn changes(scenario: &Scenario, event: &contrapposto::simulation::Event) -> Vec<
 fn step_in_words(scenario: &Scenario, step: &FootStep) -> String {
     let support = plain(&scenario.model.segments()[scenario.supports[step.support].segment].name);
     let ([from_x, _, from_z], [x, _, z]) = step.place;
-    let far = 100.0 * (x - from_x).hypot(z - from_z);
     let why = plain(&scenario.model.coordinates()[step.coordinate].name);
-    format!(
-        "Step: {support} is put {far:.0} cm away, to relieve {why}; it is there at {}. Nobody is judged while \
-             it is in the air.",
-        how_long(step.time.1)
-    )
+    let end = how_long(step.time.1);
+    let change = match step.kind {
+        StepKind::Elsewhere => {
+            let far = 100.0 * (x - from_x).hypot(z - from_z);
+            format!("Step: {support} is put {far:.0} cm away, to relieve {why}; it is there at {end}")
+        }
+        StepKind::PutDown => format!("{} is put down to rest, to relieve {why}; it lies at {end}", sentence(&support)),
+        StepKind::TakenOff => format!("{} is taken up again, to relieve {why}, until {end}", sentence(&support)),
+    };
+    format!("{change}. Nobody is judged while it is in the air.")
 }

@@ -1,7 +1,7 @@
 //! Closes the fingers of hands that hold something: the skin's fingers are straight, and follow the hand as a whole.
 //!
-//! Fingers bend like a bar into an arc about a handle in the palm. Lengths are shares of the length of the hand, measured on the skin of
-//! the built-in adult; the thumb lies across the palm already.
+//! Fingers bend like a bar into an arc about a handle in the palm, and close up to lie side by side. Lengths are shares of the length of
+//! the hand, measured on the skin of the built-in adult; the thumb lies across the palm already.
 
 use contrapposto::model::{Model, plain_name};
 use contrapposto::statics::LoadKind;
@@ -18,6 +18,12 @@ const DROOP: (f64, f64) = (0.055, 0.30);
 const HANDLE_RADIUS: f64 = 0.135;
 /// The share of the radius off the middle of the fingers from which on a vertex belongs to the thumb.
 const THUMB: f64 = 0.7;
+/// Little, ring, middle and index finger: the place of the middle of each across the hand at the knuckles, its growth along the straight
+/// finger, and its place in a closed hand, a finger's width apart.
+const FINGERS: [(f64, f64, f64); 4] =
+    [(-0.25, -0.4, -0.215), (-0.13, -0.25, -0.112), (0.0, -0.1, -0.01), (0.14, 0.115, 0.095)];
+/// Distance from the knuckles at which fingers lie side by side.
+const CLOSED_UP: f64 = 0.15;
 /// The share of 255 from which on a vertex belongs to the hand.
 const OF_HAND: u16 = 128;
 
@@ -68,7 +74,17 @@ fn bent(at: Vector3<f64>, length: f64, palm: f64) -> Vector3<f64> {
     }
     let (sine, cosine) = (along / radius).sin_cos();
     let toward = DROOP.0 * length + radius - (radius - off) * cosine;
-    Vector3::new(at.x, -KNUCKLES * length - (radius - off) * sine, palm * toward)
+    let across = length * beside(at.x / length, along / length);
+    Vector3::new(across, -KNUCKLES * length - (radius - off) * sine, palm * toward)
+}
+
+/// The place across a closed hand of a point of a finger, from its place across the open one and its distance from the knuckles.
+fn beside(across: f64, along: f64) -> f64 {
+    let middle = |&(at, growth, _): &(f64, f64, f64)| at + growth * along;
+    let off = |finger: &&(f64, f64, f64)| (across - middle(finger)).abs();
+    let Some(finger) = FINGERS.iter().min_by(|a, b| off(a).total_cmp(&off(b))) else { return across };
+    let share = (along / CLOSED_UP).clamp(0.0, 1.0);
+    across + share * share * (3.0 - 2.0 * share) * (finger.2 - middle(finger))
 }
 
 #[cfg(test)]
@@ -94,9 +110,18 @@ mod tests {
             assert!(moved.len() > 300 && shut < 0.75 * open && shut > 0.5 * open, "{} {open} {shut}", moved.len());
             for &v in &moved {
                 let (before, at) = (local(&skin.vertices[v]), local(&after[v]));
-                assert!((at.x - before.x).abs() < 1e-9 && -before.y > KNUCKLES * open - 1e-9, "{before} {at}");
+                assert!((at.x - before.x).abs() < 0.16 * open && -before.y > KNUCKLES * open - 1e-9, "{before} {at}");
                 assert!(palm * at.z < 0.45 * open, "in the palm or before it: {at}");
             }
+            // Side by side: between straight fingers are gaps, between closed ones hardly any.
+            let gap = |all: &[Vector3<f64>]| {
+                let far_out = moved.iter().filter(|v| far(&skin.vertices[**v]) > (KNUCKLES + CLOSED_UP) * open);
+                let mut across: Vec<f64> = far_out.map(|&v| local(&all[v]).x).collect();
+                across.sort_by(f64::total_cmp);
+                across.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
+            };
+            let (apart, together) = (gap(&skin.vertices), gap(&after));
+            assert!(apart > 0.05 * open && together < 0.03 * open, "{} {}", apart / open, together / open);
             let tip = moved.iter().max_by(|a, b| far(&skin.vertices[**a]).total_cmp(&far(&skin.vertices[**b])));
             let tip = local(&after[*tip.unwrap()]);
             assert!(-tip.y < KNUCKLES * open && palm * tip.z > 0.1 * open, "{tip}");

@@ -14,7 +14,7 @@ use super::group::GroupName;
 use super::plain_table;
 use crate::view::axes::pelvis_list;
 use crate::view::frame::Frame;
-use crate::view::words::{MOST_ROWS, group as group_in_words, how_long, plain};
+use crate::view::words::{MOST_ROWS, group as group_in_words, how_long, plain, shares_of_all};
 
 /// Least differences, as shares of strength and in degrees, that have a line.
 const SAME: f64 = 5e-4;
@@ -195,6 +195,13 @@ fn spread(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 impl ComparedPostureText {
+    /// The share of the weight of body and loads on the first support of a segment.
+    fn carried_by(&self, segment: &str) -> Option<f64> {
+        let of_body: Vec<f64> = self.supports.iter().filter_map(|support| support.share).collect();
+        let support = self.supports.iter().position(|support| support.segment == segment)?;
+        (of_body.len() == self.supports.len()).then(|| shares_of_all(&of_body)[support])
+    }
+
     fn new(stance: &ComparedPosture) -> Self {
         let contacts =
             stance.frame.as_ref().and_then(|frame| frame.standing.as_ref()).map(|standing| &standing.contacts);
@@ -217,7 +224,7 @@ impl ComparedPostureText {
     }
 }
 
-/// `The easiest first: B holds through 5.0 min, 33.0 min in all, hardest worked at 9 %; A can be held 12.0 min.`
+/// `The easiest first: B holds through 5.0 min, 33 min in all, hardest worked at 9 %; A can be held 12 min.`
 fn answer(postures: &[ComparedPosture]) -> String {
     let seconds = |stance: &ComparedPosture| match stance.verdict.kind {
         VerdictKind::Holds | VerdictKind::HeldUntil => stance.verdict.seconds.unwrap_or(f64::INFINITY),
@@ -304,10 +311,7 @@ fn whole(postures: &[ComparedPosture], text: &CompareText) -> comfy_table::Table
         }
     }
     for segment in named {
-        row(format!("weight on {}", plain(segment)), &|posture| {
-            let share = posture.supports.iter().find(|share| share.segment == segment);
-            percent(share.and_then(|share| share.share))
-        });
+        row(format!("weight on {}", plain(segment)), &|posture| percent(posture.carried_by(segment)));
     }
     if text.postures.iter().any(|posture| posture.pelvis_list_deg.is_some()) {
         row("pelvis drops".to_owned(), &|posture| {

@@ -12,6 +12,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::math::Function;
 use contrapposto::model::{Coordinate, CoordinateKind, Model, MuscleGroup};
 use contrapposto::passive::{PassiveLaw, Term};
+use contrapposto_formats::ModelFormat;
 use contrapposto_formats::model_ir::KindTally;
 use contrapposto_formats::tissue::SourcedModel;
 use serde::Serialize;
@@ -22,6 +23,11 @@ use super::sources::{Known, Seen, Source};
 use crate::view::moment::MomentJoint;
 use group_strength::StrengthText;
 use muscle_counts::muscle_counts;
+
+/// The meaning of the numbers of the adult.
+const NOT_JUDGED: &str = "\nStrength is the torque that all muscles of a direction give together at a joint, and so is their fatigue; single muscles are \
+                          not judged.\nThe shoulder blade is part of the thorax: muscles that hold it (trapezius, serratus anterior) are not judged, and an arm \
+                          above the shoulder is as strong as its curve says.\n";
 
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
@@ -274,6 +280,9 @@ pub(crate) fn readable(opened: &SourcedModel, file: &str) -> String {
     let _ = writeln!(text, "{}", coordinates(opened, &mut seen));
     text.push_str(&seen.legend());
     text.push_str(&muscle_counts(&opened.muscle_tally.0));
+    if opened.format == ModelFormat::Adult {
+        text.push_str(NOT_JUDGED);
+    }
     if !opened.notes.is_empty() {
         text.push_str("\nnotes:\n");
         opened.notes.iter().for_each(|note| {

@@ -54,6 +54,8 @@ pub(crate) struct RelaxText {
 pub(crate) struct RelaxedPostureText {
     /// Sum of (active torque / strength)^2 over the coordinates of the effort task.
     pub(crate) effort: f64,
+    /// `true`: the mirror image of the posture takes the same effort and is not listed.
+    mirrored: bool,
     /// `false`: it still moved after the largest number of steps; effort still fell, by little.
     settled: bool,
     /// `ligaments`, `gravity` (it comes back by itself), `attention` (it does not), or `null` where nothing can move.
@@ -203,6 +205,7 @@ impl RelaxedPostureText {
         let values = found.relaxed.posture.values().iter().copied();
         Self {
             effort: found.relaxed.effort,
+            mirrored: found.mirrored,
             settled: found.relaxed.reason != Reason::StepLimit,
             held_by: found.stability.equilibrium.map(|equilibrium| match equilibrium {
                 Equilibrium::Stable(Carrier::Ligaments) => "ligaments",
@@ -253,6 +256,11 @@ pub(crate) fn weight(posture: &RelaxedPostureText) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
+/// `1`, or `1 and its mirror image`.
+pub(crate) fn number_in_words(i: usize, mirrored: bool) -> String {
+    if mirrored { format!("{} and its mirror image", i + 1) } else { (i + 1).to_string() }
+}
+
 /// One row a posture, then the details of each.
 pub(crate) fn report(text: &RelaxText) -> String {
     let mut table = plain_table();
@@ -260,7 +268,7 @@ pub(crate) fn report(text: &RelaxText) -> String {
     for (i, posture) in text.postures.iter().enumerate() {
         let hardest = posture.groups.first().map(|group| format!("{}, {}", group.name, percent(group.relative_load)));
         table.add_row([
-            (i + 1).to_string(),
+            number_in_words(i, posture.mirrored),
             format!("{:.4}", posture.effort),
             weight(posture),
             posture.held(),

@@ -3,7 +3,7 @@
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
 use contrapposto::model::CoordinateKind;
-use contrapposto::simulation::{CoordinateSummary, Scenario, Standing, StopReason, Summary, TaskSettings};
+use contrapposto::simulation::{CoordinateSummary, Scenario, Standing, StepKind, StopReason, Summary, TaskSettings};
 use contrapposto::tasks::Task;
 use contrapposto::verdict::error_in_words;
 
@@ -167,8 +167,13 @@ fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) ->
         let segment = plain(&segments[scenario.supports[step.support].segment].name);
         let relieved = plain(&scenario.model.coordinates()[step.coordinate].name);
         let ([x, y, z], [to_x, to_y, to_z]) = step.place;
+        let what = match step.kind {
+            StepKind::Elsewhere => "put elsewhere",
+            StepKind::PutDown => "put down to rest",
+            StepKind::TakenOff => "taken up again",
+        };
         text += &format!(
-            "{segment} was put elsewhere at {}, within {}, from ({x:.2}, {y:.2}, {z:.2}) to ({to_x:.2}, {to_y:.2}, {to_z:.2}) m, \
+            "{segment} was {what} at {}, within {}, from ({x:.2}, {y:.2}, {z:.2}) to ({to_x:.2}, {to_y:.2}, {to_z:.2}) m, \
              to relieve {relieved}: effort {:.4} before, {:.4} after\n",
             how_long(step.time.0),
             how_long(step.time.1 - step.time.0),

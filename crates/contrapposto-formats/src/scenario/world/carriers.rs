@@ -10,6 +10,7 @@ use super::text::{CarriedText, FeetText, FloorText, FootText, SeatText, TableTex
 use super::word::Word;
 use crate::input_error::InputError;
 use crate::scenario::obstacle_text::ObstacleText;
+use crate::scenario::rest_text::RestText;
 use crate::scenario::support::FEET;
 use crate::scenario::task_text::{GroundText, HeelText, NamedPlaceText, OnText, PlaceText, PlaneText, SupportText};
 use crate::scenario::text::ScenarioText;
@@ -37,6 +38,15 @@ const SEAT_WIDTH: f64 = 1.5;
 const SEAT_WIDTH_ALONE: f64 = 0.32;
 /// Distance of a hand or the middle of a forearm behind the near edge of a table, m (assumed).
 const BEHIND_EDGE: f64 = 0.12;
+
+/// Least distance of the middle of a palm from the edges of a table, m (assumed).
+const PALM_INSIDE: f64 = 0.06;
+/// Greatest distance of the middle of a palm behind the near edge, m (assumed).
+const PALM_REACH: f64 = 0.45;
+/// Greatest distance of the middle of a palm outside its shoulder, m (assumed).
+const PALM_ASIDE: f64 = 0.30;
+/// Greatest distance of the middle of a palm on the other side of the midline, m (assumed).
+const PALM_ACROSS: f64 = 0.05;
 
 /// Reads all of them.
 pub(super) fn read(world: &mut World, at: &Located, text: &ScenarioText, model: &Model) -> Result<(), InputError> {
@@ -178,7 +188,25 @@ fn read_table(
         world.support(word, rests(segment, level(height)));
         place_arm(world, model, segment, edge + BEHIND_EDGE);
     }
+    for hand in &text.may_carry {
+        let region_m = region_of_hand(model, hand.segment(), (edge, height), size);
+        let on = PlaneText { normal: [0.0, 1.0, 0.0], point_m: Some([0.0, height, 0.0]) };
+        let segment = hand.segment().to_owned();
+        let rest = RestText { segment, on, region_m, friction: None, share_max: None, corners_m: None };
+        world.may_rest.push((rest, word.path.clone()));
+    }
     Ok(())
+}
+
+/// The part of a table's top in which the middle of a palm may be put: within reach, on the hand's own side.
+fn region_of_hand(model: &Model, hand: &str, (edge, height): (f64, f64), size: [f64; 3]) -> Vec<[f64; 3]> {
+    let [from, to] = [edge + PALM_INSIDE, (edge + size[0] - PALM_INSIDE).min(edge + PALM_REACH)];
+    let shoulder = if hand.ends_with("_r") { "humerus_r" } else { "humerus_l" };
+    let aside = model.segment("pelvis").zip(model.segment(shoulder)).map_or(0.0, |(a, b)| in_segment(model, a, b).z);
+    let side = if hand.ends_with("_r") { 1.0 } else { -1.0 };
+    let outer = (aside.abs() + PALM_ASIDE).min(0.5 * size[2] - PALM_INSIDE);
+    let [inner, outer] = [-side * PALM_ACROSS, side * outer];
+    vec![[from, height, inner], [to, height, inner], [to, height, outer], [from, height, outer]]
 }
 
 /// Wants a hand or forearm so far ahead, and as far aside as the shoulder.

@@ -8,19 +8,23 @@ use contrapposto::tasks::{Point, PriorityLevel, Task};
 use nalgebra::Vector3;
 
 use super::word::Word;
+use crate::input_error::InputError;
 use crate::scenario::levels::Level;
 use crate::scenario::obstacle_text::ObstacleText;
+use crate::scenario::rest_text::RestText;
 use crate::scenario::stage::Stage;
 use crate::scenario::task_text::SupportText;
 use crate::scenario::text::ScenarioText;
 use crate::thing::Thing;
-use crate::toml_file::Alias;
+use crate::toml_file::{Alias, Located};
 
 /// The things of a scenario, in terms of the longhand.
 #[derive(Default)]
 pub(in crate::scenario) struct World {
     /// Supports, after those of the file.
     pub(in crate::scenario) supports: Vec<SupportText>,
+    /// Rests, after those of the file, and the tables of the file that they come from.
+    pub(in crate::scenario) may_rest: Vec<(RestText, Vec<String>)>,
     /// Obstacles, after those of the file.
     pub(in crate::scenario) obstacles: Vec<ObstacleText>,
     /// Loads, after those of the file.
@@ -74,6 +78,21 @@ impl World {
             from: from.clone(),
         };
         self.origins.iter().map(alias).collect()
+    }
+
+    /// The rests of the file and of its things, and the tables of the file that they come from.
+    pub(in crate::scenario) fn all_rests(
+        &self,
+        at: &Located,
+        text: &ScenarioText,
+    ) -> Result<(Vec<RestText>, Vec<Vec<String>>), InputError> {
+        let of_file = text.rest.iter().enumerate();
+        let of_file = of_file.map(|(i, rest)| (rest.clone(), vec!["rest".to_owned(), i.to_string()]));
+        let all: Vec<_> = of_file.chain(self.may_rest.iter().cloned()).collect();
+        for (rest, path) in &all {
+            rest.check(at, &path.iter().map(String::as_str).collect::<Vec<_>>())?;
+        }
+        Ok(all.into_iter().unzip())
     }
 
     /// The tasks of hands by priority, above relief.

@@ -105,6 +105,9 @@ pub(crate) struct TableText {
     /// Parts of the body that rest on it: `right_hand`, `left_hand`, `right_forearm`, `left_forearm`.
     #[serde(default)]
     pub(crate) carries: Vec<CarriedText>,
+    /// Hands that `simulate` may put on it when a muscle group is tired: `right_hand`, `left_hand`.
+    #[serde(default)]
+    pub(crate) may_carry: Vec<HandText>,
 }
 
 /// The seat: pelvis and feet carry the sitter; a backrest the trunk, armrests the forearms.
@@ -217,6 +220,25 @@ pub(crate) enum CarriedText {
     LeftForearm,
     /// The back, behind the shoulder blades.
     Back,
+}
+
+/// A palm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum HandText {
+    /// The right palm.
+    RightHand,
+    /// The left palm.
+    LeftHand,
+}
+
+impl HandText {
+    pub(super) fn segment(self) -> &'static str {
+        match self {
+            Self::RightHand => SideText::Right.hand(),
+            Self::LeftHand => SideText::Left.hand(),
+        }
+    }
 }
 
 impl SideText {

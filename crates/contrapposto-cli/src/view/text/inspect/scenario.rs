@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use contrapposto::contact::Place;
+use contrapposto::contact::{Place, Support};
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use contrapposto::tasks::{CenterOfMassGoal, LookAtGoal, Task, Thing};
@@ -91,6 +91,14 @@ pub(crate) fn scenario_report<'a>(contents: &'a ScenarioContents, file: &'a str)
         share_max: support.share_max,
         place: if support.place == Place::Fixed { "start" } else { "free" },
     });
+    let rests = contents.rests.iter().map(|support| SupportLine {
+        segment: name(support.segment),
+        at_m: middle_of_region(support),
+        normal: support.normal.into(),
+        friction: support.friction,
+        share_max: support.share_max,
+        place: "when tired",
+    });
     let tasks = contents.tasks.iter().map(|task| TaskLine {
         priority: task.priority,
         above_relief: task.above_relief,
@@ -106,13 +114,21 @@ pub(crate) fn scenario_report<'a>(contents: &'a ScenarioContents, file: &'a str)
         file,
         title: &contents.title,
         model: model.name(),
-        supports: supports.collect(),
+        supports: supports.chain(rests).collect(),
         loads: contents.loads.iter().map(|load| load_line(contents, load)).collect(),
         tasks: tasks.collect(),
         obstacles: contents.obstacles.iter().map(|(name, thing)| obstacle_line(name, thing)).collect(),
         start: moved.iter().map(|(_, name, value)| (*name, *value)).collect(),
         notes: &contents.notes,
         start_words: moved.iter().map(|(i, name, value)| start_word(model, *i, name, *value)).collect(),
+    }
+}
+
+/// The middle of the places that a support may have, ground, m.
+fn middle_of_region(support: &Support) -> [f64; 3] {
+    match &support.place {
+        Place::Free(region) => (region.corners.iter().sum::<Vector3<f64>>() / region.corners.len() as f64).into(),
+        Place::Fixed => [0.0; 3],
     }
 }
 

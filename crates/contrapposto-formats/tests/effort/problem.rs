@@ -3,11 +3,6 @@
 //! passive torque of every joint, unit strengths. Either the upper body on a fixed pelvis, or standing on both feet without a
 //! limit of friction.
 
-#![allow(dead_code, unreachable_pub, reason = "a test and a benchmark use different parts")]
-
-#[path = "../common/shared.rs"]
-mod files;
-
 use std::path::Path;
 
 use contrapposto::contact::{Balance, Support};
@@ -24,7 +19,7 @@ use contrapposto_formats::urdf;
 use nalgebra::Vector3;
 use serde_json::Value;
 
-use self::files::shared;
+use super::shared::shared;
 
 /// Sole of a foot in the frame of the peer's foot: centre and half length, half width, height, m.
 const SOLE: [f64; 4] = [0.054652, 0.0899, 0.0374, 0.0785085];

@@ -1,13 +1,13 @@
 //! Tables of unknown origin: any bytes give a value or an error, in time proportional to their number.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::CoordinateKind::Translation;
 use contrapposto_formats::loads::{GroundReaction, external_loads};
 use contrapposto_formats::motion::{Units, postures, read_table, write_sto};
 
-use super::common::{hammer, hammer_mutants, mutate, next};
+use super::common::{hammer, hammer_mutants, mutate, next, processor_time};
 use super::{CSV, STATES, STORAGE, free, man, read, sto};
 
 #[test]
@@ -129,21 +129,14 @@ fn mutated_external_loads_give_finite_loads_or_a_complaint() {
 
 #[test]
 fn reading_takes_linear_time() {
-    // Time on the processor where the system tells it: other programs do not count.
-    let start = Instant::now();
-    let now = || {
-        let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-        let on_processor = statistics.split(' ').next().and_then(|ns| ns.parse().ok());
-        on_processor.map_or_else(|| start.elapsed(), Duration::from_nanos)
-    };
     let time = |text: &str, repetitions: usize| {
-        let start = now();
+        let start = processor_time();
         for _ in 0..repetitions {
             if let Ok(table) = read_table("x", text.as_bytes()) {
                 drop(postures(&table, "x", text.as_bytes(), &free(), Units::FromFile));
             }
         }
-        now() - start
+        processor_time() - start
     };
     let labels = |n: usize| (0..n).map(|i| format!("c{i}")).collect::<Vec<_>>().join("\t");
     let shapes: [(&str, &dyn Fn(usize) -> String); 6] = [

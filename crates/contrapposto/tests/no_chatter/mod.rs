@@ -3,8 +3,6 @@
 //! The long test takes pieces: `CONTRAPPOSTO_SEED` is the seed of its first scenario, `CONTRAPPOSTO_SCENARIOS` their number. It prints the
 //! sums after every 50 scenarios.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
-
 mod judge;
 mod scenarios;
 

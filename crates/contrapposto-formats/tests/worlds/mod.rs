@@ -1,14 +1,10 @@
 //! Random worlds: bodies on feet or a seat with tasks, loads, obstacles, events and strategies at random, run for some seconds. Every
 //! sample keeps what the program promises, a second run gives the same bits, and so does one that is resumed from a snapshot.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
-
-#[path = "../common/samples.rs"]
-mod samples;
+use crate::common::{processor_time, samples};
 mod world;
 
-use std::sync::OnceLock;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use contrapposto::contact::Slip;
 use contrapposto::simulation::{Run, Scenario, ScenarioError, Snapshot, StopReason};
@@ -115,14 +111,6 @@ fn slow_worlds_take_less_than_ten_seconds_of_processor_a_step() {
         }
         assert_eq!(expected.next(), None, "{name}");
     }
-}
-
-/// Time of this thread on the processor, where the system tells it.
-fn processor_time() -> Duration {
-    static START: OnceLock<Instant> = OnceLock::new();
-    let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let on_processor = statistics.split(' ').next().and_then(|ns| ns.parse().ok());
-    on_processor.map_or_else(|| START.get_or_init(Instant::now).elapsed(), Duration::from_nanos)
 }
 
 /// A second run, and one from the snapshot, show the same bits.

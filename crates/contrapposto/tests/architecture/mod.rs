@@ -2,8 +2,6 @@
 //! that they list, no file of a crate uses another one that uses it back, files and functions stay short, a constant's name has
 //! one meaning in a crate, and documentation opens with a statement about a thing with a name.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
-
 mod docs;
 mod graph;
 mod measures;

@@ -1,0 +1,11 @@
+//! Names a change of what carries the body, which a relief may try.
+
+use super::sample::StepKind;
+
+/// A change of a support that may be tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Offer {
+    /// Number of the support in the scenario.
+    pub(super) number: usize,
+    pub(super) kind: StepKind,
+}

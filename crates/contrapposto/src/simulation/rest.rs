@@ -1,0 +1,83 @@
+//! Defines places where the body may put a hand when a muscle group is tired.
+
+use nalgebra::{Unit, UnitVector3, Vector3};
+
+use crate::contact::{Place, Support, SupportError};
+use crate::model::{LARGEST, Model};
+use crate::tasks::{Bounds, Carried, Component, LookAt, LookAtGoal, Task, within_region};
+
+/// A support that is not in use at the start. Its place is free: the region says where on its plane the patch may be put.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    /// Number of the support in the scenario.
+    pub support: usize,
+    /// Height of the plane along the support's normal, m.
+    pub height: f64,
+    /// Normal of the patch toward the body, segment frame, of unit length; along the support's normal where the patch lies flat.
+    pub inward: Vector3<f64>,
+}
+
+impl Rest {
+    /// Whether the rest fits `supports` of `model`.
+    fn check(&self, supports: &[Support], model: &Model) -> Result<(), SupportError> {
+        let Some(support) = supports.get(self.support) else {
+            return Err(SupportError::Rest { support: self.support, count: supports.len() });
+        };
+        let check = |ok: bool, what, value, accepted| {
+            let segment = model.segments()[support.segment].name.clone();
+            if ok { Ok(()) } else { Err(SupportError::Number { segment, what, value, accepted }) }
+        };
+        check(self.height.abs() <= LARGEST, "height of the plane (m)", self.height, "finite and at most 1e9 in size")?;
+        let length = self.inward.norm();
+        check((length - 1.0).abs() <= 1e-6, "length of the patch's normal", length, "1")?;
+        let corners = match &support.place {
+            Place::Free(region) => region.corners.len(),
+            Place::Fixed => 0,
+        };
+        check(corners >= 3, "number of corners of the region", corners as f64, "at least 3")
+    }
+
+    /// The tasks of a patch that lies flat on its plane, within its region.
+    pub(crate) fn lies(&self, support: &Support) -> [Task; 2] {
+        let normal = Unit::new_normalize(support.normal);
+        let direction: UnitVector3<f64> = Unit::new_normalize(self.inward);
+        let on_plane =
+            Component { of: Carried::Point(support.middle()), along: normal, limits: (self.height, self.height) };
+        let components = std::iter::once(on_plane).chain(within_region(support)).collect();
+        let goal = LookAtGoal::Direction(normal);
+        [
+            Task::LookAt(LookAt { segment: support.segment, eye: Vector3::zeros(), direction, goal }),
+            Task::Bounds(Bounds { segment: support.segment, components }),
+        ]
+    }
+}
+
+/// Whether the rests fit the last of `supports`, one each, of `model`.
+pub(super) fn check_rests(rests: &[Rest], supports: &[Support], model: &Model) -> Result<(), SupportError> {
+    let first = supports.len().checked_sub(rests.len());
+    for (i, rest) in rests.iter().enumerate() {
+        if first.is_none_or(|first| rest.support != first + i) {
+            return Err(SupportError::Rest { support: rest.support, count: supports.len() });
+        }
+        rest.check(supports, model)?;
+    }
+    Ok(())
+}
+
+/// The `limits` of a body while the supports `in_use` are: a hand that rests on a thing touches it.
+pub(super) fn limits_with(
+    limits: &[Task],
+    (rests, supports): (&[Rest], &[Support]),
+    model: &Model,
+    in_use: &[usize],
+) -> Vec<Task> {
+    let rests = rests.iter().filter(|rest| in_use.contains(&rest.support));
+    let carrying: Vec<usize> = rests.map(|rest| supports[rest.support].segment).collect();
+    let limit = |task: &Task| match task {
+        Task::Clearance(clearance) if !carrying.is_empty() => {
+            Task::Clearance(clearance.with_carrying(model, &carrying))
+        }
+        _ => task.clone(),
+    };
+    limits.iter().map(limit).collect()
+}
