@@ -60,7 +60,7 @@ impl Range {
     /// About `count` round values inside the range: multiples of 1, 2 or 5 times a power of ten.
     fn ticks(self, count: f64) -> Ticks {
         let rough = (self.high - self.low) / count;
-        let power = 10_f64.powf(rough.log10().floor());
+        let power = libm::pow(10.0, libm::log10(rough).floor());
         let step = [1.0, 2.0, 5.0]
             .map(|factor| factor * power)
             .into_iter()
@@ -83,7 +83,7 @@ impl Ticks {
         if value == 0.0 {
             return "0".to_owned();
         }
-        let decimals = (-self.step.log10().floor()).clamp(0.0, 9.0) as usize;
+        let decimals = (-libm::log10(self.step).floor()).clamp(0.0, 9.0) as usize;
         if value.abs() >= 1e5 || decimals > 4 {
             number_text(&format!("{value:.2e}"))
         } else {

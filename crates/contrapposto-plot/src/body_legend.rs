@@ -183,7 +183,7 @@ fn swatch(canvas: &mut Canvas, x: f64, y: f64, fill: Ink, pen: Pen) {
 
 /// The largest of 1, 2 and 5 times a power of ten that is not above a positive number.
 fn round(most: f64) -> f64 {
-    let power = 10_f64.powf(most.log10().floor());
+    let power = libm::pow(10.0, libm::log10(most).floor());
     [5.0, 2.0, 1.0].map(|factor| factor * power).into_iter().find(|value| *value <= most * 1.000_001).unwrap_or(power)
 }
 
@@ -192,6 +192,6 @@ fn amount(value: f64, unit: &str) -> String {
     if !(1e-3..1e5).contains(&value) {
         return number_text(&format!("{value:.0e} {unit}"));
     }
-    let decimals = (-value.log10() - 1e-9).ceil().max(0.0) as usize;
+    let decimals = (-libm::log10(value) - 1e-9).ceil().max(0.0) as usize;
     number_text(&format!("{value:.decimals$} {unit}"))
 }

@@ -196,7 +196,7 @@ fn within(bounds: &Bounds, view: &View, point: [f64; 3]) -> bool {
 
 /// An arrow with a thin white rim, so that it stands out from the parts below it.
 pub(crate) fn arrow(canvas: &mut Canvas, foot: Point, tip: Point, ink: Ink) {
-    let length = (tip.0 - foot.0).hypot(tip.1 - foot.1);
+    let length = libm::hypot(tip.0 - foot.0, tip.1 - foot.1);
     if length < SHORTEST_ARROW {
         return;
     }

@@ -41,7 +41,7 @@ pub(crate) const ABOVE: View =
 impl View {
     /// Coordinates of a point in the view.
     pub(crate) fn project(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
-        let ((sy, cy), (sp, cp)) = (self.yaw.sin_cos(), self.pitch.sin_cos());
+        let ((sy, cy), (sp, cp)) = (libm::sincos(self.yaw), libm::sincos(self.pitch));
         // From the front, the body's right hand is on the left.
         let (across, ahead) = (sy * x - cy * z, cy * x + sy * z);
         [across, cp * y - sp * ahead, cp * ahead + sp * y]

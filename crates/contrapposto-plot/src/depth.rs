@@ -79,10 +79,10 @@ impl Solid {
 
 fn directions() -> impl Iterator<Item = [f64; 3]> {
     let ring = |ring: u32| {
-        let (out, towards) = (f64::from(ring) / f64::from(RINGS) * TAU / 4.0).sin_cos();
+        let (out, towards) = libm::sincos(f64::from(ring) / f64::from(RINGS) * TAU / 4.0);
         let slices = if ring == 0 { 1 } else { SLICES };
         (0..slices).map(move |slice| {
-            let (sin, cos) = (TAU * f64::from(slice) / f64::from(SLICES)).sin_cos();
+            let (sin, cos) = libm::sincos(TAU * f64::from(slice) / f64::from(SLICES));
             [out * cos, out * sin, towards]
         })
     };

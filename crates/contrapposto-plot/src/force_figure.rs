@@ -119,7 +119,7 @@ fn shown(force: f64, largest: f64) -> f64 {
 
 /// Distance of two circles, N: 1, 2 or 5 times a power of ten, two to five circles in all.
 fn ring(largest: f64) -> f64 {
-    let power = 10f64.powf((largest / 2.0).log10().floor());
+    let power = libm::pow(10.0, libm::log10(largest / 2.0).floor());
     let fits = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= largest / 2.0);
     fits.unwrap_or(1.0) * power
 }
@@ -143,7 +143,7 @@ fn section(canvas: &mut Canvas, paper: &Paper<'_>, figure: &ForceFigure, spokes:
     for k in 1..=(own / step).ceil() as usize {
         let size = paper.scale * radius * step * k as f64;
         let circle = (0..=CIRCLE_PARTS).map(|part| {
-            let (sin, cos) = (std::f64::consts::TAU * part as f64 / CIRCLE_PARTS as f64).sin_cos();
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * part as f64 / CIRCLE_PARTS as f64);
             (center.0 + size * cos, center.1 + size * sin)
         });
         for part in clip(&circle.collect::<Vec<Point>>(), window) {

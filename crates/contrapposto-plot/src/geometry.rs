@@ -104,7 +104,7 @@ pub(crate) fn dashes(points: &[Point], dash: f64, gap: f64) -> Vec<Vec<Point>> {
     let mut open: Vec<Point> = points.first().copied().into_iter().collect();
     for pair in points.windows(2) {
         let (mut here, there) = (pair[0], pair[1]);
-        let mut length = (there.0 - here.0).hypot(there.1 - here.1);
+        let mut length = libm::hypot(there.0 - here.0, there.1 - here.1);
         while length > left {
             let share = left / length;
             here = (here.0 + share * (there.0 - here.0), here.1 + share * (there.1 - here.1));

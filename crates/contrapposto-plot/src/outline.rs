@@ -36,11 +36,11 @@ impl Arc {
         let pieces = if self.circle.radius > 0.0 { ((self.to - self.from) / LONGEST_CURVE).ceil() } else { 0.0 };
         let step = (self.to - self.from) / pieces;
         // A cubic curve whose handles are so long touches the arc at both ends and in the middle.
-        let handle = 4.0 / 3.0 * (step / 4.0).tan() * self.circle.radius;
+        let handle = 4.0 / 3.0 * libm::tan(step / 4.0) * self.circle.radius;
         (0..pieces as u32).map(move |piece| {
             let ends = [f64::from(piece), f64::from(piece + 1)].map(|k| self.from + k * step);
             let [(x0, y0), (x, y)] = ends.map(|angle| self.circle.point(angle));
-            let [(s0, c0), (s, c)] = ends.map(f64::sin_cos);
+            let [(s0, c0), (s, c)] = ends.map(libm::sincos);
             Step::Curve((x0 - handle * s0, y0 + handle * c0), (x + handle * s, y - handle * c), (x, y))
         })
     }
@@ -53,7 +53,7 @@ impl Circle {
     }
 
     fn point(&self, angle: f64) -> Point {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         (self.center.0 + self.radius * cos, self.center.1 + self.radius * sin)
     }
 }
@@ -81,7 +81,7 @@ impl Outline {
     /// Whether the hull contains the point.
     pub(crate) fn contains(&self, (x, y): Point) -> bool {
         let left_of = |(a, b): (&Point, &Point)| (b.0 - a.0) * (y - a.1) - (b.1 - a.1) * (x - a.0) >= 0.0;
-        let within = |arc: &Arc| (x - arc.circle.center.0).hypot(y - arc.circle.center.1) <= arc.circle.radius;
+        let within = |arc: &Arc| libm::hypot(x - arc.circle.center.0, y - arc.circle.center.1) <= arc.circle.radius;
         let corners = &self.corners;
         let polygon = corners.len() > 2 && corners.iter().zip(corners.iter().cycle().skip(1)).all(left_of);
         polygon || self.arcs.iter().any(within)
@@ -110,9 +110,9 @@ fn arcs(circles: &[Circle]) -> Vec<Arc> {
     for (i, a) in circles.iter().enumerate() {
         for b in &circles[..i] {
             let (dx, dy) = (a.center.0 - b.center.0, a.center.1 - b.center.1);
-            let share = (b.radius - a.radius) / dx.hypot(dy);
+            let share = (b.radius - a.radius) / libm::hypot(dx, dy);
             if share.abs() < 1.0 {
-                let (middle, half) = (dy.atan2(dx), share.acos());
+                let (middle, half) = (libm::atan2(dy, dx), libm::acos(share));
                 turns.extend([middle - half, middle + half].map(|turn| turn.rem_euclid(TAU)));
             }
         }
@@ -121,7 +121,7 @@ fn arcs(circles: &[Circle]) -> Vec<Arc> {
     turns.push(TAU);
     let mut arcs: Vec<Arc> = vec![];
     for pair in turns.windows(2).filter(|pair| pair[1] - pair[0] > ANGLE_TOLERANCE) {
-        let (sin, cos) = (0.5 * (pair[0] + pair[1])).sin_cos();
+        let (sin, cos) = libm::sincos(0.5 * (pair[0] + pair[1]));
         // The first of equals.
         let farthest = circles.iter().rev().max_by(|a, b| a.support((cos, sin)).total_cmp(&b.support((cos, sin))));
         let Some(&circle) = farthest else { return vec![] };

@@ -109,8 +109,8 @@ fn value(parameter: &Parameter, point: f64, score: Option<f64>) -> Value {
             Value::Number(cut_off(&|value| (value - mean) / deviation, &|score| mean + deviation * score))
         }
         Distribution::Lognormal { median, deviation } => {
-            Value::Number(cut_off(&|value| (value / median).max(0.0).ln() / deviation, &|score| {
-                median * (deviation * score).exp()
+            Value::Number(cut_off(&|value| libm::log((value / median).max(0.0)) / deviation, &|score| {
+                median * libm::exp(deviation * score)
             }))
         }
         Distribution::Range { low, high } => Value::Number((low * (1.0 - point()) + high * point()).clamp(*low, *high)),

@@ -38,5 +38,5 @@ pub(crate) fn pelvis_list(model: &Model, posture: &[f64]) -> Option<f64> {
     kinematics.update(model, &Posture::new(posture.to_vec())).ok()?;
     let [right, _, up] = directions(model);
     let across = kinematics.placement(model, pelvis).rotation * right;
-    Some(-across.dot(&up).clamp(-1.0, 1.0).asin().to_degrees())
+    Some(-libm::asin(across.dot(&up).clamp(-1.0, 1.0)).to_degrees())
 }

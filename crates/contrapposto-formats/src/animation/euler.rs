@@ -10,12 +10,12 @@ const POLE: f64 = 1e-9;
 /// Angles `[a, b, c]`, rad, with `rotation = Rz(a) Ry(b) Rx(c)`: of all such angles those nearest to `before`.
 pub(crate) fn zyx(rotation: &Matrix3<f64>, before: [f64; 3]) -> [f64; 3] {
     let r = rotation;
-    let level = r[(0, 0)].hypot(r[(1, 0)]);
-    let a = if level < POLE { before[0] } else { r[(1, 0)].atan2(r[(0, 0)]) };
-    let b = (-r[(2, 0)]).atan2(level);
+    let level = libm::hypot(r[(0, 0)], r[(1, 0)]);
+    let a = if level < POLE { before[0] } else { libm::atan2(r[(1, 0)], r[(0, 0)]) };
+    let b = libm::atan2(-r[(2, 0)], level);
     // Well conditioned for whatever first angle was taken.
-    let (sin, cos) = a.sin_cos();
-    let c = (sin * r[(0, 2)] - cos * r[(1, 2)]).atan2(cos * r[(1, 1)] - sin * r[(0, 1)]);
+    let (sin, cos) = libm::sincos(a);
+    let c = libm::atan2(sin * r[(0, 2)] - cos * r[(1, 2)], cos * r[(1, 1)] - sin * r[(0, 1)]);
     let near = |angles: [f64; 3]| [0, 1, 2].map(|i| angles[i] - TAU * ((angles[i] - before[i]) / TAU).round());
     let way = |angles: &[f64; 3]| angles.iter().zip(before).map(|(a, b)| (a - b).abs()).sum::<f64>();
     let (one, other) = (near([a, b, c]), near([a + PI, PI - b, c + PI]));

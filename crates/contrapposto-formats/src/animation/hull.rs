@@ -13,8 +13,8 @@ pub(super) const SLICES: usize = 16;
 /// Directions in which a hull is measured: the poles first and last.
 fn directions() -> impl Iterator<Item = [f64; 3]> {
     let point = |ring: usize, slice: usize| {
-        let (across, up) = (std::f64::consts::PI * ring as f64 / RINGS as f64).sin_cos();
-        let (sin, cos) = (std::f64::consts::TAU * slice as f64 / SLICES as f64).sin_cos();
+        let (across, up) = libm::sincos(std::f64::consts::PI * ring as f64 / RINGS as f64);
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * slice as f64 / SLICES as f64);
         [across * cos, up, across * sin]
     };
     let rings = (1..RINGS).flat_map(move |ring| (0..SLICES).map(move |slice| point(ring, slice)));

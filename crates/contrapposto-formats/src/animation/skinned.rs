@@ -123,7 +123,7 @@ fn mesh(skin: &Skin, drawn: &Rotation3<f64>, buffer: &mut Buffer) -> Value {
 /// A channel of sRGB as a linear one.
 pub(super) fn linear(channel: u8) -> u8 {
     let c = f64::from(channel) / 255.0;
-    let light = if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+    let light = if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) };
     (255.0 * light).round() as u8
 }
 

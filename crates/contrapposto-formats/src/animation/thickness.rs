@@ -23,8 +23,8 @@ pub(super) fn balls_of(points: &[Ball], volume: f64) -> Vec<Ball> {
 /// Volume of the convex hull of balls, m3: the farthest point in each direction, joined to a mesh.
 fn hull_volume(balls: &[Ball]) -> f64 {
     let point = |ring: usize, slice: usize| -> [f64; 3] {
-        let (down, across) = (std::f64::consts::PI * ring as f64 / RINGS as f64).sin_cos();
-        let (sin, cos) = (std::f64::consts::TAU * (slice % SLICES) as f64 / SLICES as f64).sin_cos();
+        let (down, across) = libm::sincos(std::f64::consts::PI * ring as f64 / RINGS as f64);
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * (slice % SLICES) as f64 / SLICES as f64);
         let d = [down * cos, across, down * sin];
         let support = |b: &&Ball| b[0] * d[0] + b[1] * d[1] + b[2] * d[2] + b[3];
         let Some(b) = balls.iter().max_by(|a, b| support(a).total_cmp(&support(b))) else { return [0.0; 3] };

@@ -115,7 +115,7 @@ fn ring(places: &[Vector3<f64>], k: usize, radius: f64) -> [[[f32; 3]; 2]; SIDES
     let x = other.cross(&along).normalize();
     let z = x.cross(&along);
     std::array::from_fn(|side| {
-        let (sin, cos) = (std::f64::consts::TAU * side as f64 / SIDES as f64).sin_cos();
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * side as f64 / SIDES as f64);
         let out = cos * x + sin * z;
         [places[k] + radius * out, out].map(|v| [v.x, v.y, v.z].map(|v| v as f32 + 0.0))
     })

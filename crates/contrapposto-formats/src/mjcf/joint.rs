@@ -161,7 +161,8 @@ impl<'a> Joint<'a> {
         };
         if self.kind == Kind::Ball {
             // The angle of rotation is at most `high` where w is at least the cosine of its half.
-            let w = limited.map(|(_, high)| (if high >= std::f64::consts::PI { 0.0 } else { (high / 2.0).cos() }, 1.0));
+            let w =
+                limited.map(|(_, high)| (if high >= std::f64::consts::PI { 0.0 } else { libm::cos(high / 2.0) }, 1.0));
             push(format!("{name}_qw"), CoordinateKind::Quaternion, w, 1.0);
             for letter in ["x", "y", "z"] {
                 push(format!("{name}_q{letter}"), CoordinateKind::Quaternion, None, 0.0);

@@ -56,9 +56,9 @@ fn lowest(solid: &SolidIr, down: &Unit<Vector3<f64>>) -> Vec<Vector3<f64>> {
         }
         SolidShape::Cylinder { radius, half } => {
             // The lowest place of a rim, or around the whole rim where the cylinder stands upright.
-            let lowest = own.y.atan2(own.x);
+            let lowest = libm::atan2(own.y, own.x);
             let angles = (0..RIM_CORNERS).map(move |i| lowest + TAU * i as f64 / RIM_CORNERS as f64);
-            let rim = angles.map(|angle| Vector3::new(radius * angle.cos(), radius * angle.sin(), 0.0));
+            let rim = angles.map(|angle| Vector3::new(radius * libm::cos(angle), radius * libm::sin(angle), 0.0));
             rim.flat_map(|point| [half, -half].map(|end| point + Vector3::new(0.0, 0.0, end))).collect()
         }
     };
@@ -81,7 +81,7 @@ fn sole(mut corners: Vec<Vector3<f64>>, down: &Unit<Vector3<f64>>) -> Vec<Vector
     let mut farthest = vec![];
     for i in 0..SOLE_CORNERS {
         let angle = TAU * i as f64 / SOLE_CORNERS as f64;
-        let direction = angle.cos() * right + angle.sin() * ahead;
+        let direction = libm::cos(angle) * right + libm::sin(angle) * ahead;
         let along = |place: usize| corners[place].dot(&direction);
         farthest.extend((0..corners.len()).max_by(|&a, &b| along(a).total_cmp(&along(b))));
     }

@@ -82,7 +82,7 @@ fn muscle<'a>(around: &Surroundings<'_, 'a>, node: Node<'a>, all: &mut MusclesIr
         optimal_fiber_length: number("optimal_fiber_length", 0.1)?,
         tendon_slack_length: number("tendon_slack_length", 0.2)?,
         pennation: number(pennation, 0.0)?,
-        max_pennation: number("maximum_pennation_angle", 0.1f64.acos())?,
+        max_pennation: number("maximum_pennation_angle", libm::acos(0.1))?,
         least_activation,
         rigid_tendon,
         law,

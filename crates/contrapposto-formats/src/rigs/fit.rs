@@ -190,8 +190,8 @@ impl Pose<'_> {
     fn foot(&self, foot: &str, shank: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
         let flat = if shank.angle() > FEET_FLAT { shank } else { UnitQuaternion::identity() };
         let ahead = self.assignment.joint(foot).and_then(|joint| self.below(joint)).map(|ahead| flat.inverse() * ahead);
-        let Some(ahead) = ahead.filter(|v| v.x.hypot(v.z) > LEVEL_FOOT) else { return flat };
-        let yaw = (-ahead.z).atan2(ahead.x);
+        let Some(ahead) = ahead.filter(|v| libm::hypot(v.x, v.z) > LEVEL_FOOT) else { return flat };
+        let yaw = libm::atan2(-ahead.z, ahead.x);
         let yaw = if yaw.abs() <= MOST_TOE_OUT { yaw } else { 0.0 };
         flat * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), yaw)
     }

@@ -157,7 +157,7 @@ impl<'a> Targets<'a> {
         for &frame in self.frames {
             self.rig.place(Some(frame), &mut placed);
             let ahead = self.fitted.axes.to_ground() * placed[pelvis.joint].rotation * pelvis.to_joint * Vector3::x();
-            let yaw = (-ahead.z).atan2(ahead.x);
+            let yaw = libm::atan2(-ahead.z, ahead.x);
             before = yaw - TAU * ((yaw - before) / TAU).round();
             (low, high) = (before.min(low), before.max(high));
         }

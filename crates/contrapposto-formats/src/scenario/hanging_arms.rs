@@ -54,7 +54,7 @@ pub(super) fn add_hanging_arms(
         let down: UnitVector3<f64> = Unit::try_new(model.gravity(), 1e-9)?;
         let hangs_at_start = stage.kinematics.direction(model, upper, axis.into_inner()).dot(&down) > 0.0;
         let is_idle = !arm.iter().filter_map(|name| model.segment(name)).any(is_named);
-        let limits = (NEUTRAL.cos(), f64::INFINITY);
+        let limits = (libm::cos(NEUTRAL), f64::INFINITY);
         let component = Component { of: Carried::Direction(axis), along: down, limits };
         let mut turns = shoulder.iter().filter_map(|name| model.coordinate(name)).peekable();
         let can_move = turns.peek().is_none() || turns.any(|coordinate| free[coordinate]);

@@ -158,8 +158,8 @@ impl Patch {
             let (a, b) = (u.dot(&(corner - self.middle)), v.dot(&(corner - self.middle)));
             (uu, uv, vv) = (uu + a * a, uv + a * b, vv + b * b);
         }
-        let angle = 0.5 * f64::atan2(2.0 * uv, uu - vv);
-        angle.cos() * u + angle.sin() * v
+        let angle = 0.5 * libm::atan2(2.0 * uv, uu - vv);
+        libm::cos(angle) * u + libm::sin(angle) * v
     }
 
     fn length(&self, along: Vector3<f64>) -> f64 {

@@ -56,14 +56,14 @@ impl Resting {
         };
         let (shape, tilt) = match self.shape() {
             Shape::Point => (Shape::Point, 0.0),
-            Shape::Line(line) => (Shape::Line(line), turned(line).asin().abs()),
+            Shape::Line(line) => (Shape::Line(line), libm::asin(turned(line)).abs()),
             Shape::Flat(inner) => {
                 let center = model.segments()[segment].center_of_mass;
                 let depth = inner.dot(&(center - self.support.middle()));
                 // Toward the body where the side is known, else the nearer side.
                 let side = if depth.abs() > THROUGH_THE_MIDDLE { depth } else { turned(inner) };
                 let inner = if side < 0.0 { -inner } else { inner };
-                (Shape::Flat(inner), turned(inner).acos())
+                (Shape::Flat(inner), libm::acos(turned(inner)))
             }
         };
         Fit { gap, tilt, shape }

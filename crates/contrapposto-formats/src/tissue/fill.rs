@@ -189,7 +189,7 @@ impl<'a> Signs<'a> {
         };
         let along = theirs.dot(&ours);
         if along.abs() < AGREE {
-            let degrees = along.acos().to_degrees();
+            let degrees = libm::acos(along).to_degrees();
             return Err(format!(
                 "its direction cannot be verified, for its axis stands at {degrees:.0} deg to the expected one"
             ));

@@ -23,7 +23,7 @@ impl Person {
         let whole = Some(model.mass()).filter(|mass| Adult::MASSES.contains(mass));
         let mass = self.mass.or(whole).unwrap_or(reference.mass);
         let (least, greatest) = (*Adult::STATURES.start(), *Adult::STATURES.end());
-        let in_proportion = (reference.stature * (mass / reference.mass).cbrt()).clamp(least, greatest);
+        let in_proportion = (reference.stature * libm::cbrt(mass / reference.mass)).clamp(least, greatest);
         Adult { stature: self.stature.unwrap_or(in_proportion), mass, ..reference }
     }
 

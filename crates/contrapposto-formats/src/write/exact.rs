@@ -44,11 +44,11 @@ pub(super) fn near(x: f64, fits: impl Fn(f64) -> bool) -> f64 {
 /// Body-fixed x, y, z angles of a rotation.
 fn body_angles(rotation: &Rotation3<f64>) -> Vector3<f64> {
     let m = rotation.matrix();
-    let a = if m[(1, 2)] == 0.0 && m[(2, 2)] == 0.0 { 0.0 } else { (-m[(1, 2)]).atan2(m[(2, 2)]) };
+    let a = if m[(1, 2)] == 0.0 && m[(2, 2)] == 0.0 { 0.0 } else { libm::atan2(-m[(1, 2)], m[(2, 2)]) };
     // What is left are turns about y and z: well conditioned also where y is a right angle.
     let rest = Rotation3::from_axis_angle(&Vector3::x_axis(), -a) * rotation;
     let r = rest.matrix();
-    Vector3::new(a, r[(0, 2)].atan2(r[(2, 2)]), r[(1, 0)].atan2(r[(1, 1)]))
+    Vector3::new(a, libm::atan2(r[(0, 2)], r[(2, 2)]), libm::atan2(r[(1, 0)], r[(1, 1)]))
 }
 
 /// Body-fixed x, y, z angles, as OpenSim's frames have them.

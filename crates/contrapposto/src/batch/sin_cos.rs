@@ -46,7 +46,7 @@ pub(super) fn sin_cos(angles: Lanes) -> (Lanes, Lanes) {
 pub(super) fn sin_cos_of_any(angles: Lanes) -> (Lanes, Lanes) {
     let (mut sines, mut cosines) = sin_cos(angles);
     for (i, angle) in angles.0.into_iter().enumerate().filter(|(_, angle)| angle.abs() > LARGEST_ANGLE) {
-        (sines.0[i], cosines.0[i]) = angle.sin_cos();
+        (sines.0[i], cosines.0[i]) = libm::sincos(angle);
     }
     (sines, cosines)
 }

@@ -147,7 +147,7 @@ fn divided(points: &mut Vec<Vector3<f64>>, faces: &[[usize; 3]]) -> Vec<[usize; 
 fn sweep(directions: &[Vector3<f64>]) -> Vec<usize> {
     let key = |direction: &Vector3<f64>| {
         let band = ((direction.y + 1.0) / 2.0 * BANDS).floor();
-        let turn = direction.x.atan2(direction.z);
+        let turn = libm::atan2(direction.x, direction.z);
         (band, if band % 2.0 == 0.0 { turn } else { -turn })
     };
     let mut order: Vec<usize> = (0..directions.len()).collect();

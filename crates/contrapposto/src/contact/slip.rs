@@ -19,7 +19,7 @@ impl Slip {
 
     /// Distance and angle together, for comparisons: 1 m weighs as 1 rad.
     pub fn length(self) -> f64 {
-        self.distance.hypot(self.angle)
+        libm::hypot(self.distance, self.angle)
     }
 
     /// The greater of the shares that distance and angle have of `bound`: above 1 where it exceeds it.
@@ -30,7 +30,7 @@ impl Slip {
     /// Both together.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
-        Self { distance: self.distance.hypot(other.distance), angle: self.angle.hypot(other.angle) }
+        Self { distance: libm::hypot(self.distance, other.distance), angle: libm::hypot(self.angle, other.angle) }
     }
 
     /// Whether the distance or the angle is greater than that of `bound`.

@@ -328,7 +328,7 @@ impl<'a> Finder<'a> {
     /// The different postures, that of least effort first.
     fn finish(mut self) -> Result<Equilibria, SearchError> {
         if self.found.is_empty() {
-            let size = |missing: &Missing| missing.force.hypot(missing.moment);
+            let size = |missing: &Missing| libm::hypot(missing.force, missing.moment);
             let finite = self.fell.into_iter().filter(|missing| size(missing).is_finite());
             let least = finite.min_by(|a, b| size(a).total_cmp(&size(b)));
             let refused = self.refused.map(SearchError::Relax);

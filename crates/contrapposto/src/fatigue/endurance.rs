@@ -89,15 +89,15 @@ impl EnduranceCurve {
         }
         let f = load.min(1.0);
         let seconds = match self.form {
-            EnduranceForm::Power { b0, b1 } => b0 * f.powf(b1),
-            EnduranceForm::Exponential { a, k } => a * (-k * f).exp(),
+            EnduranceForm::Power { b0, b1 } => b0 * libm::pow(f, b1),
+            EnduranceForm::Exponential { a, k } => a * libm::exp(-k * f),
             EnduranceForm::ShiftedPower { f0, .. } | EnduranceForm::Huijgens { f0, .. } if f <= f0 => f64::INFINITY,
-            EnduranceForm::ShiftedPower { a, f0, p } => a * (f - f0).powf(p),
-            EnduranceForm::Huijgens { a, f0, p } => a * ((1.0 - f) / (f - f0)).powf(p),
+            EnduranceForm::ShiftedPower { a, f0, p } => a * libm::pow(f - f0, p),
+            EnduranceForm::Huijgens { a, f0, p } => a * libm::pow((1.0 - f) / (f - f0), p),
             EnduranceForm::InversePolynomial { c } => c[0] + (c[1] + (c[2] + c[3] / f) / f) / f,
             EnduranceForm::ConsumedEndurance { .. } if f <= 0.15 => f64::INFINITY,
-            EnduranceForm::ConsumedEndurance { a, p, c } => a / (100.0 * f - 15.0).powf(p) - c,
-            EnduranceForm::Ma { m } => -60.0 * m * f.ln() / f,
+            EnduranceForm::ConsumedEndurance { a, p, c } => a / libm::pow(100.0 * f - 15.0, p) - c,
+            EnduranceForm::Ma { m } => -60.0 * m * libm::log(f) / f,
         };
         seconds.max(0.0)
     }
@@ -125,7 +125,7 @@ impl Endurance {
     /// Fatigue after `seconds` under relative load `load`.
     pub(crate) fn advance(&self, share: f64, load: f64, seconds: f64) -> f64 {
         if load <= REST_LOAD {
-            return share * (-self.recovery_rate * seconds).exp();
+            return share * libm::exp(-self.recovery_rate * seconds);
         }
         let time = self.curve.time(load);
         if time > 0.0 { (share + seconds / time).min(1.0) } else { 1.0 }
@@ -133,7 +133,7 @@ impl Endurance {
     /// The same as a step, of a group that does not fail.
     pub(super) fn linear_step(&self, load: f64, seconds: f64) -> LinearStep {
         if load <= REST_LOAD {
-            return LinearStep::of_share((-self.recovery_rate * seconds).exp(), 0.0);
+            return LinearStep::of_share(libm::exp(-self.recovery_rate * seconds), 0.0);
         }
         let time = self.curve.time(load);
         if time > 0.0 { LinearStep::of_share(1.0, seconds / time) } else { LinearStep::of_share(0.0, 1.0) }

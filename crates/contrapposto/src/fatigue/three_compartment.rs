@@ -133,7 +133,7 @@ impl ThreeCompartment {
 
     /// The load of which that time is `seconds`: `TL = R / (R + F (1 - exp(-R T)))`.
     pub(crate) fn load_held_for(&self, seconds: f64) -> f64 {
-        let recovered = -(-self.recovery_rate * seconds.max(0.0)).exp_m1();
+        let recovered = -libm::expm1(-self.recovery_rate * seconds.max(0.0));
         if recovered == 0.0 {
             return 1.0 / (1.0 + self.fatigue_rate * seconds.max(0.0));
         }
@@ -149,7 +149,7 @@ impl ThreeCompartment {
         if load <= 0.0 || share >= 1.0 {
             return f64::INFINITY;
         }
-        ((-share * level.max(0.0)).ln_1p() - (-share).ln_1p()) / self.recovery_rate
+        (libm::log1p(-share * level.max(0.0)) - libm::log1p(-share)) / self.recovery_rate
     }
 }
 

@@ -196,7 +196,7 @@ impl Kinematics {
 /// `rotation` turned by `angle` about its own axis `k` (times `sign`), and that axis in ground.
 #[inline]
 fn turn_about(rotation: &Matrix3<f64>, k: usize, sign: f64, angle: f64) -> (Matrix3<f64>, Vector3<f64>) {
-    let (sin, cos) = (sign * angle).sin_cos();
+    let (sin, cos) = libm::sincos(sign * angle);
     let (a, b) = ((k + 1) % 3, (k + 2) % 3);
     let (from, to) = (rotation.column(a).into_owned(), rotation.column(b).into_owned());
     let mut turned = *rotation;

@@ -96,7 +96,7 @@ impl Function {
                 coefficients.iter().rev().fold([0.0; 3], |[p, d, c], k| [p * x + k, d * x + p, c * x + 2.0 * d])
             }
             Self::Sine { amplitude, omega, phase, offset } => {
-                let (sin, cos) = (omega * x + phase).sin_cos();
+                let (sin, cos) = libm::sincos(omega * x + phase);
                 [amplitude * sin + offset, amplitude * omega * cos, -amplitude * omega * omega * sin]
             }
             Self::Spline(spline) | Self::NaturalSpline(spline) => spline.value_slope_curvature(x),

@@ -39,7 +39,7 @@ impl Jet {
         let (g, h) = (self.gradient, x.gradient);
         let hessian = by_a * self.hessian + by_b * x.hessian - twice * (g * g.transpose() - h * h.transpose())
             + mixed * (g * h.transpose() + h * g.transpose());
-        Self { value: a.atan2(b), gradient: by_a * g + by_b * h, hessian }
+        Self { value: libm::atan2(a, b), gradient: by_a * g + by_b * h, hessian }
     }
 }
 

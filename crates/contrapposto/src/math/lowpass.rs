@@ -22,7 +22,7 @@ pub struct Lowpass {
 impl Lowpass {
     /// The filter of an order of at least 1, for a cut-off above 0 and below half of the sampling frequency, both in Hz.
     pub fn new(order: usize, cutoff: f64, sampling: f64) -> Self {
-        let w = (PI * cutoff / sampling).tan();
+        let w = libm::tan(PI * cutoff / sampling);
         let (mut numerator, mut denominator) = (vec![1.0], vec![1.0]);
         let mut section = |above: &[f64], below: &[f64]| {
             let scaled = |part: &[f64]| part.iter().map(|c| c / below[0]).collect::<Vec<_>>();
@@ -33,7 +33,7 @@ impl Lowpass {
             section(&[w, w], &[1.0 + w, w - 1.0]);
         }
         for k in 0..order / 2 {
-            let p = 2.0 * ((2 * k + 1) as f64 * PI / (2 * order) as f64).sin();
+            let p = 2.0 * libm::sin((2 * k + 1) as f64 * PI / (2 * order) as f64);
             let square = w * w;
             let below = [1.0 + p * w + square, 2.0 * (square - 1.0), 1.0 - p * w + square];
             section(&[square, 2.0 * square, square], &below);

@@ -122,7 +122,7 @@ impl MonotoneCubic {
                 continue;
             }
             let (alpha, beta) = (tangents[i] / secants[i], tangents[i + 1] / secants[i]);
-            let radius = alpha.hypot(beta);
+            let radius = libm::hypot(alpha, beta);
             if radius > 3.0 {
                 tangents[i] *= 3.0 / radius;
                 tangents[i + 1] *= 3.0 / radius;

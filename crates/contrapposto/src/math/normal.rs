@@ -12,7 +12,7 @@ pub fn cumulative(x: f64) -> f64 {
         term *= x * x / order;
         sum += term;
     }
-    (0.5 + sum * (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt()).clamp(0.0, 1.0)
+    (0.5 + sum * libm::exp(-0.5 * x * x) / (2.0 * std::f64::consts::PI).sqrt()).clamp(0.0, 1.0)
 }
 
 /// The standard normal number that `probability`, above 0 and below 1, lies below: rational approximations of Wichura 1988
@@ -23,7 +23,7 @@ pub fn quantile(probability: f64) -> f64 {
         return centred * ratio(&MIDDLE, 0.180_625 - centred * centred);
     }
     let tail = if centred < 0.0 { probability } else { 1.0 - probability };
-    let depth = (-tail.ln()).sqrt();
+    let depth = (-libm::log(tail)).sqrt();
     let size = if depth <= 5.0 { ratio(&TAIL, depth - 1.6) } else { ratio(&FAR_TAIL, depth - 5.0) };
     if centred < 0.0 { -size } else { size }
 }

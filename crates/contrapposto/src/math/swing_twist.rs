@@ -117,7 +117,7 @@ impl SwingTwist {
         let cosine = (w * w + along * along).sqrt();
         let factor = swing_over_sine(cosine)[0] * cosine.recip();
         let mut values = [0.0; 3];
-        values[t] = wrapped(2.0 * along.atan2(w) + self.reference[t]);
+        values[t] = wrapped(2.0 * libm::atan2(along, w) + self.reference[t]);
         values[a] = (w * first + (-hand) * (along * second)) * factor + self.reference[a];
         values[b] = (w * second + hand * (along * first)) * factor + self.reference[b];
         values
@@ -151,7 +151,7 @@ fn swing_over_sine(c: f64) -> [f64; 3] {
         return [f, first, second];
     }
     let sine = d * (1.0 + c);
-    let f = 2.0 * c.acos() / sine.sqrt();
+    let f = 2.0 * libm::acos(c) / sine.sqrt();
     let first = (c * f - 2.0) / sine;
     [f, first, (f + 3.0 * c * first) / sine]
 }

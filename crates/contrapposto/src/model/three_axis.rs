@@ -55,7 +55,7 @@ impl ThreeAxisJoint {
     }
 
     fn turn(&self, hinge: usize, values: &[f64]) -> UnitQuaternion<f64> {
-        let (sine, cosine) = (0.5 * values[self.coordinates[hinge]]).sin_cos();
+        let (sine, cosine) = libm::sincos(0.5 * values[self.coordinates[hinge]]);
         let part = sine * self.hinges[hinge];
         UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(cosine, part.x, part.y, part.z))
     }

@@ -25,7 +25,7 @@ pub struct Band {
 impl Band {
     /// Size of the torque at an angle about its axis, rad: N m.
     fn at(&self, angle: f64) -> f64 {
-        self.torque * (self.rate * (angle - self.angle)).exp()
+        self.torque * libm::exp(self.rate * (angle - self.angle))
     }
 }
 
@@ -66,9 +66,9 @@ impl Bushing {
         let turned = axes.transpose() * second.rotation.to_rotation_matrix().into_inner();
         // R = R_x(a) R_y(b) R_z(c).
         let angles = Vector3::new(
-            (-turned[(1, 2)]).atan2(turned[(2, 2)]),
-            turned[(0, 2)].clamp(-1.0, 1.0).asin(),
-            (-turned[(0, 1)]).atan2(turned[(0, 0)]),
+            libm::atan2(-turned[(1, 2)], turned[(2, 2)]),
+            libm::asin(turned[(0, 2)].clamp(-1.0, 1.0)),
+            libm::atan2(-turned[(0, 1)], turned[(0, 0)]),
         );
         let at = second.translation.vector;
         Deflection { angles, offset: axes.transpose() * (at - first.translation.vector), axes, at }

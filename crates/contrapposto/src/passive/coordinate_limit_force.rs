@@ -153,7 +153,7 @@ fn offsets(level: f64, reach: f64, mut visit: impl FnMut(f64)) {
         }
     };
     // 6 x^3 <= steepness(x) <= 40 x^3 before the peak.
-    let foot = (level / 40.0).cbrt();
+    let foot = libm::cbrt(level / 40.0);
     search(0.99 * foot, (1.9 * foot).min(STEEPEST));
     if reach > STEEPEST && level >= 1.0 {
         search(STEEPEST, 1.0);

@@ -159,7 +159,7 @@ impl Exponentials {
         let mut torque = self.constant - self.stiffness * (q - self.neutral);
         let mut slope = -self.stiffness;
         for term in self.terms() {
-            let value = term.torque * (term.rate * (q - term.angle)).exp();
+            let value = term.torque * libm::exp(term.rate * (q - term.angle));
             torque += value;
             slope += term.rate * value;
         }
@@ -170,7 +170,7 @@ impl Exponentials {
         let x = q - self.neutral;
         let mut energy = 0.5 * self.stiffness * x * x - self.constant * q;
         for term in self.terms() {
-            energy -= term.torque / term.rate * (term.rate * (q - term.angle)).exp();
+            energy -= term.torque / term.rate * libm::exp(term.rate * (q - term.angle));
         }
         energy
     }
@@ -179,7 +179,7 @@ impl Exponentials {
     fn curvature(&self, q: f64) -> (f64, f64) {
         let (mut curvature, mut change) = (0.0, 0.0);
         for term in self.terms() {
-            let value = term.torque * term.rate * term.rate * (term.rate * (q - term.angle)).exp();
+            let value = term.torque * term.rate * term.rate * libm::exp(term.rate * (q - term.angle));
             curvature += value;
             change += term.rate * value;
         }
@@ -225,7 +225,7 @@ impl Exponentials {
         // wanted angle, and Newton's method on a convex function runs inward without overshooting.
         let mut q = f64::NAN;
         for term in self.terms().iter().filter(|t| t.rate * side > 0.0) {
-            let angle = term.angle + (level / (term.torque * term.rate).abs()).ln() / term.rate;
+            let angle = term.angle + libm::log(level / (term.torque * term.rate).abs()) / term.rate;
             q = if side < 0.0 { q.max(angle) } else { q.min(angle) };
         }
         if q.is_nan() {
@@ -234,7 +234,7 @@ impl Exponentials {
         for _ in 0..200 {
             let (mut excess, mut rise, mut bend) = (-level, 0.0, 0.0);
             for term in self.terms() {
-                let steep = -term.torque * term.rate * (term.rate * (q - term.angle)).exp();
+                let steep = -term.torque * term.rate * libm::exp(term.rate * (q - term.angle));
                 excess += steep;
                 rise += term.rate * steep;
                 bend += term.rate * term.rate * steep;

@@ -54,7 +54,7 @@ impl RienerEdrich1999 {
         let mut torque = self.constant;
         let mut gradient = [0.0; 3];
         for term in &self.terms {
-            let value = term.sign * term.exponent(angles).exp();
+            let value = term.sign * libm::exp(term.exponent(angles));
             torque += value;
             for (slope, rate) in gradient.iter_mut().zip(term.rates) {
                 *slope += rate * value;
@@ -67,7 +67,7 @@ impl RienerEdrich1999 {
     pub(crate) fn curvature(&self, angles: [f64; 3]) -> [[f64; 3]; 3] {
         let mut curvature = [[0.0; 3]; 3];
         for term in &self.terms {
-            let value = term.sign * term.exponent(angles).exp();
+            let value = term.sign * libm::exp(term.exponent(angles));
             for (row, rate) in curvature.iter_mut().zip(term.rates) {
                 row.iter_mut().zip(term.rates).for_each(|(entry, other)| *entry += rate * other * value);
             }
@@ -95,7 +95,7 @@ impl RienerEdrich1999 {
         let terms: Vec<_> = self
             .terms
             .iter()
-            .map(|term| (sign * term.sign * term.exponent(others).exp(), sign * term.rates[self.joint], 0.0))
+            .map(|term| (sign * term.sign * libm::exp(term.exponent(others)), sign * term.rates[self.joint], 0.0))
             .collect();
         Exponentials::new(&terms, 0.0, 0.0, sign * self.constant)
     }

@@ -46,7 +46,7 @@ impl CoordinateLimitForce {
 impl RienerEdrich1999 {
     /// A factor of an exponential is a term of its exponent.
     fn scaled(&self, times: f64) -> Self {
-        let term = |term: &CoupledTerm| CoupledTerm { c0: term.c0 + times.ln(), ..*term };
+        let term = |term: &CoupledTerm| CoupledTerm { c0: term.c0 + libm::log(times), ..*term };
         Self { joint: self.joint, terms: self.terms.iter().map(term).collect(), constant: times * self.constant }
     }
 }

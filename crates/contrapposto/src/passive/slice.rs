@@ -114,7 +114,7 @@ fn along(table: &PassiveCurve, angle: f64) -> (f64, f64) {
 
 /// Torque and slope that a derivative of the posture gives at an angle.
 fn followed(&(_, at, slope): &(usize, f64, f64), angle: f64) -> (f64, f64) {
-    let tanh = ((angle - at) / FOLLOWED).tanh();
+    let tanh = libm::tanh((angle - at) / FOLLOWED);
     (slope * FOLLOWED * tanh, slope * (1.0 - tanh * tanh))
 }
 

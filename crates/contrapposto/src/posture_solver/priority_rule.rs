@@ -101,7 +101,7 @@ impl PriorityRule {
     /// nothing, so that the body comes to rest whatever it is asked.
     pub(super) fn cool_toward_rest(&mut self, options: &Options) {
         let steps = (options.max_steps / STEPS_OF_COOLING).max(1);
-        self.cooling = (COOLED_STEP * options.step_tolerance / options.max_step).powf(1.0 / steps as f64);
+        self.cooling = libm::pow(COOLED_STEP * options.step_tolerance / options.max_step, 1.0 / steps as f64);
     }
 
     /// The next step may be as long as the first one.

@@ -79,11 +79,11 @@ impl Strength {
             return (self.peak, 0.0);
         }
         let phase = self.narrowness * (angle.clamp(self.tested.0, self.tested.1) - self.best);
-        let share = if phase.abs() < std::f64::consts::FRAC_PI_2 { phase.cos() } else { 0.0 };
+        let share = if phase.abs() < std::f64::consts::FRAC_PI_2 { libm::cos(phase) } else { 0.0 };
         if share <= self.floor {
             return (self.peak * self.floor, 0.0);
         }
-        let slope = if self.is_extrapolated(angle) { 0.0 } else { -self.peak * self.narrowness * phase.sin() };
+        let slope = if self.is_extrapolated(angle) { 0.0 } else { -self.peak * self.narrowness * libm::sin(phase) };
         (self.peak * share, slope)
     }
 

@@ -43,8 +43,8 @@ pub struct LargestLoad {
 
 /// Number of the greatest load of the grid that is not above `load`.
 fn index(load: f64) -> i64 {
-    let decade = load.log10().floor();
-    let mantissa = load / 10f64.powf(decade);
+    let decade = libm::log10(load).floor();
+    let mantissa = load / libm::pow(10.0, decade);
     let within = if mantissa < 2.0 { 20.0 * (mantissa - 1.0) } else { 10.0 * mantissa };
     DECADE * decade as i64 + (within + 1e-6).floor() as i64
 }

@@ -62,7 +62,7 @@ struct Sight {
 impl Sight {
     /// `f` and the error.
     fn error(&self) -> (f64, [f64; 2]) {
-        let angle = self.sine.atan2(self.along);
+        let angle = libm::atan2(self.sine, self.along);
         let f = if self.sine > 0.0 { angle / self.sine } else { 1.0 };
         let [x, y] = self.across;
         (f, [-f * y, f * x])
@@ -76,7 +76,7 @@ impl Sight {
             // z s - a loses digits here; the series is good to 1e-15.
             -2.0 / 3.0 - square * (1.0 / 5.0 + square * (3.0 / 28.0 + square * (5.0 / 72.0)))
         } else {
-            (self.along * s - s.atan2(self.along)) / (square * s)
+            (self.along * s - libm::atan2(s, self.along)) / (square * s)
         };
         let (f, _) = self.error();
         let df = h * (x * u + y * v) - gaze;
@@ -102,7 +102,7 @@ impl LookAt {
         // Fixed in the segment, so that the rows change smoothly.
         let axes = self.axes().map(|axis| kinematics.direction(model, self.segment, axis));
         let [mut x, mut y, along] = axes.map(|axis| axis.dot(&line));
-        let mut sine = x.hypot(y);
+        let mut sine = libm::hypot(x, y);
         if sine < BEHIND && along < 0.0 {
             (x, y) = if sine > 0.0 { (x / sine * BEHIND, y / sine * BEHIND) } else { (BEHIND, 0.0) };
             sine = BEHIND;

@@ -51,7 +51,7 @@ pub(super) fn inverse_left_jacobian(r: &Vector3<f64>) -> Matrix3<f64> {
         1.0 / 12.0 + square * (1.0 / 720.0 + square * (1.0 / 30240.0 + square * (1.0 / 1_209_600.0)))
     } else {
         let half = 0.5 * square.sqrt();
-        (1.0 - half / half.tan()) / square
+        (1.0 - half / libm::tan(half)) / square
     };
     let cross = r.cross_matrix();
     Matrix3::identity() - 0.5 * cross + c * (cross * cross)

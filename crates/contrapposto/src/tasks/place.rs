@@ -36,7 +36,7 @@ pub fn turned_since(support: &Support, model: &Model, start: &Kinematics, now: &
     let [normal, ahead, _] = support.axes();
     let rotation = |kinematics: &Kinematics| kinematics.placement(model, support.segment).rotation;
     let turned = rotation(now) * rotation(start).inverse() * ahead;
-    let turn = normal.dot(&ahead.cross(&turned)).atan2(ahead.dot(&turned));
+    let turn = libm::atan2(normal.dot(&ahead.cross(&turned)), ahead.dot(&turned));
     if let Place::Free(Region { turn: (least, greatest), .. }) = &mut support.place {
         // The posture itself is within them but for rounding; a limit is a quarter turn away at most.
         *least = (*least - turn).clamp(-FRAC_PI_2, 0.0);

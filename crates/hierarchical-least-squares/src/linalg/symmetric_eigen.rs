@@ -36,8 +36,8 @@ impl SymmetricEigen {
                     }
                     diagonal = false;
                     let theta = (a[q * n + q] - a[p * n + p]) / (2.0 * a[p * n + q]);
-                    let t = 1.0_f64.copysign(theta) / (theta.abs() + theta.hypot(1.0));
-                    let c = 1.0 / t.hypot(1.0);
+                    let t = 1.0_f64.copysign(theta) / (theta.abs() + libm::hypot(theta, 1.0));
+                    let c = 1.0 / libm::hypot(t, 1.0);
                     rotate_rows(a, n, p, q, c, t * c);
                     for row in a.chunks_exact_mut(n) {
                         (row[p], row[q]) = (c * row[p] - t * c * row[q], t * c * row[p] + c * row[q]);

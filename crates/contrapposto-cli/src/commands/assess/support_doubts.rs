@@ -89,5 +89,5 @@ fn tilt(corners: &[Vector3<f64>], up: &Vector3<f64>) -> f64 {
     let [first, rest @ ..] = corners else { return 0.0 };
     let pairs = rest.windows(2).map(|pair| (pair[0] - first).cross(&(pair[1] - first)));
     let normal = pairs.max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared())).and_then(|n| n.try_normalize(1e-9));
-    normal.map_or(0.0, |normal| normal.dot(up).abs().min(1.0).acos())
+    normal.map_or(0.0, |normal| libm::acos(normal.dot(up).abs().min(1.0)))
 }

@@ -77,7 +77,7 @@ pub(crate) fn size(model: &Model, matched: &Matched, unit: MarkerUnit, frames: &
         return None;
     }
     let units = [MarkerUnit::Millimetre, MarkerUnit::Centimetre, MarkerUnit::Metre];
-    let misfit = |other: &MarkerUnit| (ratio * other.metres() / unit.metres()).ln().abs();
+    let misfit = |other: &MarkerUnit| libm::log(ratio * other.metres() / unit.metres()).abs();
     let meant = units.into_iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b)))?;
     let try_it = if meant == unit {
         String::new()

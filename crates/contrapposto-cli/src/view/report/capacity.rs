@@ -168,7 +168,7 @@ pub(crate) fn picture_of_capacity(
     let [right, ahead, up] = directions(model);
     for (section, [across, along]) in figure.sections.iter_mut().zip([[ahead, up], [right, up], [right, ahead]]) {
         for k in 0..SPOKES {
-            let (sin, cos) = (std::f64::consts::TAU * k as f64 / SPOKES as f64).sin_cos();
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / SPOKES as f64);
             let Some(greatest) = forces.in_direction(&(cos * across + sin * along)) else { continue };
             let name = limit_of(model, &greatest);
             let limit = limits.place(&name);

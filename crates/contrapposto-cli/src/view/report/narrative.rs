@@ -203,7 +203,9 @@ impl Narrative<'_> {
         let support = plain(&model.segments()[self.scenario.supports[step.support].segment].name);
         let ([from_x, _, from_z], [x, _, z]) = step.place;
         let what = match step.kind {
-            StepKind::Elsewhere => format!("put elsewhere, {:.0} cm away,", 100.0 * (x - from_x).hypot(z - from_z)),
+            StepKind::Elsewhere => {
+                format!("put elsewhere, {:.0} cm away,", 100.0 * libm::hypot(x - from_x, z - from_z))
+            }
             StepKind::PutDown => "put down to rest".to_owned(),
             StepKind::TakenOff => "taken up again".to_owned(),
         };

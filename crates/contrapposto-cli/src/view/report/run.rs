@@ -154,7 +154,7 @@ fn step_in_words(scenario: &Scenario, step: &FootStep) -> String {
     let end = how_long(step.time.1);
     let change = match step.kind {
         StepKind::Elsewhere => {
-            let far = 100.0 * (x - from_x).hypot(z - from_z);
+            let far = 100.0 * libm::hypot(x - from_x, z - from_z);
             format!("Step: {support} is put {far:.0} cm away, to relieve {why}; it is there at {end}")
         }
         StepKind::PutDown => format!("{} is put down to rest, to relieve {why}; it lies at {end}", sentence(&support)),

@@ -72,7 +72,7 @@ fn bent(at: Vector3<f64>, length: f64, palm: f64) -> Vector3<f64> {
     if along <= 0.0 || off > THUMB * radius {
         return at;
     }
-    let (sine, cosine) = (along / radius).sin_cos();
+    let (sine, cosine) = libm::sincos(along / radius);
     let toward = DROOP.0 * length + radius - (radius - off) * cosine;
     let across = length * beside(at.x / length, along / length);
     Vector3::new(across, -KNUCKLES * length - (radius - off) * sine, palm * toward)

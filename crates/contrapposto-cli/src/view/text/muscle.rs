@@ -112,7 +112,7 @@ impl StateText {
         Self {
             fibre_length_m: state.fiber_length,
             fibre_length_over_optimal: state.fiber_length / muscle.spec().optimal_fiber_length,
-            pennation_rad: state.cos_pennation.clamp(-1.0, 1.0).acos(),
+            pennation_rad: libm::acos(state.cos_pennation.clamp(-1.0, 1.0)),
             tendon_force_n: state.tendon_force,
             active_force_n: state.active_force,
             passive_force_n: state.passive_force,
@@ -210,7 +210,7 @@ pub(crate) fn readable(opened: &SourcedModel, shown: &ShownMuscle<'_>) -> String
             format!("{activation}"),
             format!("{:.1}", state.fiber_length * 1e3),
             relative(state),
-            format!("{:.1}°", state.cos_pennation.clamp(-1.0, 1.0).acos().to_degrees()),
+            format!("{:.1}°", libm::acos(state.cos_pennation.clamp(-1.0, 1.0)).to_degrees()),
             format!("{:.1}", state.active_force),
             format!("{:.1}", state.passive_force),
             format!("{:.1}", state.tendon_force),

@@ -122,7 +122,7 @@ fn read_seat(world: &mut World, word: &Word<'_>, text: &SeatText, model: &Model)
     let angle = word.number("backrest_deg", text.backrest_deg.unwrap_or(BACKREST_DEFAULT_DEG), BACKREST_DEG, "deg")?;
     if text.backrest {
         let recline = (angle - 90.0).to_radians();
-        let plane = PlaneText { normal: [recline.cos(), recline.sin(), 0.0], point_m: None };
+        let plane = PlaneText { normal: [libm::cos(recline), libm::sin(recline), 0.0], point_m: None };
         let corners_m = Some(back(word, model, "backrest")?);
         world.rests.push("torso");
         world.support(word, SupportText { corners_m, ..rests("torso", OnText::Plane(plane)) });

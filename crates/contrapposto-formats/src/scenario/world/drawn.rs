@@ -93,7 +93,7 @@ pub(in crate::scenario) fn weights<'a>(model: &'a Model, loads: &'a [Load]) -> i
     loads.iter().filter_map(|load| {
         let LoadKind::Weight(mass) = load.kind else { return None };
         let hand = matches!(model.segments()[load.segment].name.as_str(), "hand_r" | "hand_l");
-        let edge = (mass / CUBE_DENSITY).cbrt();
+        let edge = libm::cbrt(mass / CUBE_DENSITY);
         let swing = Some(Swing { at: load.point, up: Vector3::y() });
         (hand && mass > 0.0).then(|| Thing { swing, ..thing("weight", [edge; 3], load.point, Some(load.segment)) })
     })
@@ -139,7 +139,7 @@ pub(super) fn rests(stage: &Stage<'_>, segments: &[&str]) -> impl Iterator<Item 
 /// The backrest behind the patch of a back.
 fn backrest(model: &Model, kinematics: &Kinematics, support: &Support) -> Thing {
     let corners = stations(model, kinematics, support);
-    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), support.normal.y.atan2(support.normal.x));
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), libm::atan2(support.normal.y, support.normal.x));
     let along = turn * Vector3::y();
     let heights = corners.iter().map(|corner| along.dot(corner));
     let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)));

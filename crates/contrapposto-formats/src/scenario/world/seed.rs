@@ -112,7 +112,7 @@ impl Seeder<'_> {
         // Heights of pelvis and hip joint with the buttocks on the seat.
         let pelvis = seat.height_m - (turn * (buttock - origin)).y;
         let above = pelvis + (turn * (hip - origin)).y;
-        let rise = ((knee.y - sole - above) / (hip - knee).norm()).clamp(-STEEPEST_THIGH, STEEPEST_THIGH).asin();
+        let rise = libm::asin(((knee.y - sole - above) / (hip - knee).norm()).clamp(-STEEPEST_THIGH, STEEPEST_THIGH));
         let bent = std::f64::consts::FRAC_PI_2 + rise;
         let slide = self.model.coordinate("pelvis_ty")?;
         let height = self.model.coordinates()[slide].default + pelvis - origin.y;
@@ -126,7 +126,7 @@ impl Seeder<'_> {
         {
             // Upper arm forward until the elbow is at the armrests, forearm level.
             let drop = pelvis + shoulder.y - origin.y - armrests - forearm(self.model);
-            let forward = (drop / (shoulder - elbow).norm()).clamp(0.0, 1.0).acos();
+            let forward = libm::acos((drop / (shoulder - elbow).norm()).clamp(0.0, 1.0));
             for side in ["r", "l"] {
                 pairs.push((format!("arm_flex_{side}"), forward));
                 pairs.push((format!("elbow_flex_{side}"), std::f64::consts::FRAC_PI_2 - forward));
@@ -152,7 +152,7 @@ impl Seeder<'_> {
         let mut pairs = vec![];
         for step in &text.step {
             // The thigh forward, the shank upright: the hip is nearer to the foot by `thigh (1 - cos phi)`.
-            let flexion = (1.0 - step.height_m / thigh).clamp(-0.5, 1.0).acos();
+            let flexion = libm::acos((1.0 - step.height_m / thigh).clamp(-0.5, 1.0));
             let side = &step.under.segment()[5..];
             pairs.push((format!("hip_flexion{side}"), flexion));
             pairs.push((format!("knee_angle{side}"), flexion));

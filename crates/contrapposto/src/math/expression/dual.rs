@@ -25,22 +25,22 @@ pub(super) fn unary(function: Unary, a: Dual) -> Dual {
     match function {
         Unary::Negate => a.chain(-x, -1.0),
         Unary::Sqrt => a.chain(x.sqrt(), 0.5 / x.sqrt()),
-        Unary::Exp => a.chain(x.exp(), x.exp()),
-        Unary::Log => a.chain(x.ln(), 1.0 / x),
-        Unary::Sin => a.chain(x.sin(), x.cos()),
-        Unary::Cos => a.chain(x.cos(), -x.sin()),
-        Unary::Sec => a.chain(1.0 / x.cos(), x.tan() / x.cos()),
-        Unary::Csc => a.chain(1.0 / x.sin(), -1.0 / (x.sin() * x.tan())),
-        Unary::Tan => a.chain(x.tan(), 1.0 + x.tan() * x.tan()),
-        Unary::Cot => a.chain(1.0 / x.tan(), -1.0 / (x.sin() * x.sin())),
-        Unary::Asin => a.chain(x.asin(), 1.0 / (1.0 - x * x).sqrt()),
-        Unary::Acos => a.chain(x.acos(), -1.0 / (1.0 - x * x).sqrt()),
-        Unary::Atan => a.chain(x.atan(), 1.0 / (1.0 + x * x)),
-        Unary::Sinh => a.chain(x.sinh(), x.cosh()),
-        Unary::Cosh => a.chain(x.cosh(), x.sinh()),
-        Unary::Tanh => a.chain(x.tanh(), 1.0 - x.tanh() * x.tanh()),
-        Unary::Erf => a.chain(erf(x), std::f64::consts::FRAC_2_SQRT_PI * (-x * x).exp()),
-        Unary::Erfc => a.chain(erfc(x), -std::f64::consts::FRAC_2_SQRT_PI * (-x * x).exp()),
+        Unary::Exp => a.chain(libm::exp(x), libm::exp(x)),
+        Unary::Log => a.chain(libm::log(x), 1.0 / x),
+        Unary::Sin => a.chain(libm::sin(x), libm::cos(x)),
+        Unary::Cos => a.chain(libm::cos(x), -libm::sin(x)),
+        Unary::Sec => a.chain(1.0 / libm::cos(x), libm::tan(x) / libm::cos(x)),
+        Unary::Csc => a.chain(1.0 / libm::sin(x), -1.0 / (libm::sin(x) * libm::tan(x))),
+        Unary::Tan => a.chain(libm::tan(x), 1.0 + libm::tan(x) * libm::tan(x)),
+        Unary::Cot => a.chain(1.0 / libm::tan(x), -1.0 / (libm::sin(x) * libm::sin(x))),
+        Unary::Asin => a.chain(libm::asin(x), 1.0 / (1.0 - x * x).sqrt()),
+        Unary::Acos => a.chain(libm::acos(x), -1.0 / (1.0 - x * x).sqrt()),
+        Unary::Atan => a.chain(libm::atan(x), 1.0 / (1.0 + x * x)),
+        Unary::Sinh => a.chain(libm::sinh(x), libm::cosh(x)),
+        Unary::Cosh => a.chain(libm::cosh(x), libm::sinh(x)),
+        Unary::Tanh => a.chain(libm::tanh(x), 1.0 - libm::tanh(x) * libm::tanh(x)),
+        Unary::Erf => a.chain(erf(x), std::f64::consts::FRAC_2_SQRT_PI * libm::exp(-x * x)),
+        Unary::Erfc => a.chain(erfc(x), -std::f64::consts::FRAC_2_SQRT_PI * libm::exp(-x * x)),
         Unary::Step => Dual::constant(f64::from(x >= 0.0)),
         Unary::Delta => Dual::constant(f64::from(x == 0.0)),
         Unary::Square => a.chain(x * x, 2.0 * x),
@@ -68,9 +68,9 @@ pub(super) fn binary(operation: Binary, a: Dual, b: Dual) -> Dual {
         Binary::Multiply => sum(x * y, y, x),
         Binary::Divide => sum(x / y, 1.0 / y, -x / (y * y)),
         Binary::Power => {
-            let by_base = if y == 0.0 { 0.0 } else { y * x.powf(y - 1.0) };
-            let by_exponent = if x == 0.0 && y > 0.0 { 0.0 } else { x.powf(y) * x.ln() };
-            sum(x.powf(y), by_base, by_exponent)
+            let by_base = if y == 0.0 { 0.0 } else { y * libm::pow(x, y - 1.0) };
+            let by_exponent = if x == 0.0 && y > 0.0 { 0.0 } else { libm::pow(x, y) * libm::log(x) };
+            sum(libm::pow(x, y), by_base, by_exponent)
         }
         // As the C++ library: the first where they are not ordered.
         Binary::Min => choose(y < x),
@@ -95,7 +95,7 @@ fn erf(x: f64) -> f64 {
         term *= 2.0 * x * x / (2.0 * n + 1.0);
         sum += term;
     }
-    std::f64::consts::FRAC_2_SQRT_PI * (-x * x).exp() * sum
+    std::f64::consts::FRAC_2_SQRT_PI * libm::exp(-x * x) * sum
 }
 
 /// `erfc(x) = exp(-x^2)/sqrt(pi) 1/(x + (1/2)/(x + 1/(x + (3/2)/(x + ...))))` far out (Abramowitz & Stegun 7.1.14).
@@ -104,5 +104,5 @@ fn erfc(x: f64) -> f64 {
         return if x < -SERIES_END { 2.0 - erfc(-x) } else { 1.0 - erf(x) };
     }
     let fraction = (1..=120).rev().fold(x, |below, k| x + 0.5 * f64::from(k) / below);
-    0.5 * std::f64::consts::FRAC_2_SQRT_PI * (-x * x).exp() / fraction
+    0.5 * std::f64::consts::FRAC_2_SQRT_PI * libm::exp(-x * x) / fraction
 }

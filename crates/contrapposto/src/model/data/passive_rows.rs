@@ -50,7 +50,7 @@ impl CurveRow {
         }
         if let Some(law) = &mut row.riener_edrich1999 {
             for [_, c0, ..] in &mut law.terms {
-                *c0 += times.ln();
+                *c0 += libm::log(times);
             }
             law.constant_nm *= times;
         }

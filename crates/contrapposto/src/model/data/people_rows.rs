@@ -68,13 +68,13 @@ impl PeopleOfSex {
     /// Stature (m) and mass (kg) that a `share` of these people, above 0 and below 1, do not exceed, each alone.
     pub fn size_at(&self, share: f64) -> (f64, f64) {
         let (score, stature, mass) = (quantile(share), self.stature_m, self.mass_kg);
-        (stature.mean + score * stature.deviation, mass.median * (score * mass.deviation_of_logarithm).exp())
+        (stature.mean + score * stature.deviation, mass.median * libm::exp(score * mass.deviation_of_logarithm))
     }
 
     /// Shares of these people who do not exceed a stature (m), and who do not exceed a mass (kg).
     pub fn shares_up_to(&self, stature: f64, mass: f64) -> [f64; 2] {
         let of_stature = (stature - self.stature_m.mean) / self.stature_m.deviation;
-        let of_mass = (mass / self.mass_kg.median).ln() / self.mass_kg.deviation_of_logarithm;
+        let of_mass = libm::log(mass / self.mass_kg.median) / self.mass_kg.deviation_of_logarithm;
         [of_stature, of_mass].map(cumulative)
     }
 }

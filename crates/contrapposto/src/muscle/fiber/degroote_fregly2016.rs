@@ -57,7 +57,7 @@ impl Curves for DeGrooteFregly2016 {
         let x = (length - 1.0) / self.active_width + 1.0;
         let bell = |[height, place, width, growth]: [f64; 4]| {
             let (away, wide) = (x - place, width + growth * x);
-            let force = height * (-0.5 * (away / wide).powi(2)).exp();
+            let force = height * libm::exp(-0.5 * (away / wide).powi(2));
             (force, -force * away / wide * (wide - away * growth) / (wide * wide))
         };
         let sum = BELLS.map(bell).into_iter().fold((0.0, 0.0), |(f, s), (force, slope)| (f + force, s + slope));
@@ -69,14 +69,14 @@ impl Curves for DeGrooteFregly2016 {
             return (0.0, 0.0);
         }
         let rate = PASSIVE_EXPONENT / self.fiber_strain;
-        let zero = (rate * (PASSIVE_ZERO - 1.0)).exp();
-        let (force, all) = ((rate * (length - 1.0)).exp(), PASSIVE_EXPONENT.exp() - zero);
+        let zero = libm::exp(rate * (PASSIVE_ZERO - 1.0));
+        let (force, all) = (libm::exp(rate * (length - 1.0)), libm::exp(PASSIVE_EXPONENT) - zero);
         ((force - zero) / all, rate * force / all)
     }
 
     fn tendon(&self, length: f64) -> (f64, f64) {
-        let rate = ((1.0 + TENDON_FORCE) / TENDON_FORCE).ln() / self.tendon_strain;
-        let force = TENDON_FORCE * (rate * (length - 1.0)).exp();
+        let rate = libm::log((1.0 + TENDON_FORCE) / TENDON_FORCE) / self.tendon_strain;
+        let force = TENDON_FORCE * libm::exp(rate * (length - 1.0));
         (force - TENDON_FORCE, rate * force)
     }
 }

@@ -153,7 +153,7 @@ impl Fibers {
 
     /// Length of fibres whose extent along the tendon is given, m; the shortest where it is too small.
     fn length_of_extent(&self, extent: f64) -> f64 {
-        let length = self.width.hypot(extent);
+        let length = libm::hypot(self.width, extent);
         if extent > 0.0 { length.max(self.least_length) } else { self.least_length }
     }
 

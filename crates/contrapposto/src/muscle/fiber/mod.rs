@@ -119,8 +119,8 @@ impl Muscle {
             FiberLaw::Schutte1993(law) => CurveSet::Schutte(Box::new(law.clone())),
             FiberLaw::Mujoco(law) => CurveSet::Mujoco(law.checked()?),
         };
-        let width = spec.optimal_fiber_length * spec.pennation.sin();
-        let pennate = width / spec.max_pennation.sin();
+        let width = spec.optimal_fiber_length * libm::sin(spec.pennation);
+        let pennate = width / libm::sin(spec.max_pennation);
         // Shortest length over optimal length, beside that of the greatest pennation.
         let least = match &curves {
             CurveSet::Thelen(_) | CurveSet::DeGrooteFregly(_) | CurveSet::Mujoco(_) => 0.0,

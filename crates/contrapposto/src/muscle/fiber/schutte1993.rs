@@ -85,7 +85,7 @@ impl Curves for Schutte1993 {
 
     fn passive(&self, length: f64) -> (f64, f64) {
         let Some(curve) = &self.passive else {
-            let force = (NO_CURVE_EXPONENT * (length - NO_CURVE_ONE)).exp();
+            let force = libm::exp(NO_CURVE_EXPONENT * (length - NO_CURVE_ONE));
             return (force, NO_CURVE_EXPONENT * force);
         };
         let [force, slope, _] = curve.value_slope_curvature(length);

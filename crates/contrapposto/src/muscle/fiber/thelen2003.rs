@@ -31,7 +31,7 @@ impl Default for Thelen2003 {
 impl Curves for Thelen2003 {
     fn active(&self, length: f64) -> (f64, f64) {
         let x = length - 1.0;
-        let force = (-x * x / self.active_shape).exp();
+        let force = libm::exp(-x * x / self.active_shape);
         (force, -2.0 * x / self.active_shape * force)
     }
 
@@ -41,8 +41,8 @@ impl Curves for Thelen2003 {
             return (0.0, 0.0);
         }
         let rate = self.passive_shape / self.fiber_strain;
-        let all = self.passive_shape.exp_m1();
-        ((rate * x).exp_m1() / all, rate * (rate * x).exp() / all)
+        let all = libm::expm1(self.passive_shape);
+        (libm::expm1(rate * x) / all, rate * libm::exp(rate * x) / all)
     }
 
     fn tendon(&self, length: f64) -> (f64, f64) {
@@ -50,14 +50,14 @@ impl Curves for Thelen2003 {
         if x <= 0.0 {
             return (0.0, 0.0);
         }
-        let e = TOE_EXPONENT.exp();
+        let e = libm::exp(TOE_EXPONENT);
         let toe = self.tendon_strain * 0.99 * e / (1.66 * e - 0.67);
         if x > toe {
             let slope = (1.0 - TOE_FORCE) / (self.tendon_strain - toe);
             return (TOE_FORCE + slope * (x - toe), slope);
         }
-        let (rate, all) = (TOE_EXPONENT / toe, TOE_EXPONENT.exp_m1());
-        (TOE_FORCE / all * (rate * x).exp_m1(), TOE_FORCE / all * rate * (rate * x).exp())
+        let (rate, all) = (TOE_EXPONENT / toe, libm::expm1(TOE_EXPONENT));
+        (TOE_FORCE / all * libm::expm1(rate * x), TOE_FORCE / all * rate * libm::exp(rate * x))
     }
 }
 

@@ -35,7 +35,7 @@ pub(super) fn around(
         let (before, after) = ((first - from).xy().norm(), (to - second).xy().norm());
         let slope = (to.z - from.z) / (before + turn.arc + after);
         (first.z, second.z) = (from.z + slope * before, from.z + slope * (before + turn.arc));
-        length = turn.arc.hypot(second.z - first.z);
+        length = libm::hypot(turn.arc, second.z - first.z);
     }
     Some(Contact { first, second, length })
 }

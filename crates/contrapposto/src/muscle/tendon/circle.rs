@@ -37,7 +37,7 @@ pub(super) fn round(radius: f64, [from, to]: [Vector2<f64>; 2], side: Option<Vec
     let clockwise = if sense == 0.0 { side.is_some_and(|side| from.perp(&side) < 0.0) } else { (sense > 0.0) == far };
     let turn = if clockwise { 1.0 } else { -1.0 };
     let (first, second) = (tangent(radius, &from, turn), tangent(radius, &to, -turn));
-    let angle = first.perp(&second).atan2(first.dot(&second));
+    let angle = libm::atan2(first.perp(&second), first.dot(&second));
     let turned = if clockwise { -angle } else { angle }.rem_euclid(TAU);
     // A line that only just touches turns by nothing, not once round.
     let arc = radius * if turned > TAU - FULL_TURN { 0.0 } else { turned };

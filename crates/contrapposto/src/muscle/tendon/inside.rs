@@ -22,7 +22,7 @@ pub(super) fn reflect(radius: f64, [from, to]: [Vector2<f64>; 2]) -> Option<Vect
             return None;
         }
     }
-    let turned = from.perp(&to).atan2(from.dot(&to));
+    let turned = libm::atan2(from.perp(&to), from.dot(&to));
     let angle = balance(radius, near, far, turned.abs());
     Some(Rotation2::new(angle.copysign(turned)) * (from / near) * radius)
 }
@@ -31,8 +31,8 @@ pub(super) fn reflect(radius: f64, [from, to]: [Vector2<f64>; 2]) -> Option<Vect
 fn balance(radius: f64, near: f64, far: f64, all: f64) -> f64 {
     // The part of a unit tension along the circle, and its slope.
     let pull = |distance: f64, angle: f64| {
-        let (sin, cos) = angle.sin_cos();
-        let length = (distance - radius * cos).hypot(radius * sin);
+        let (sin, cos) = libm::sincos(angle);
+        let length = libm::hypot(distance - radius * cos, radius * sin);
         let along = distance * sin / length;
         (along, (distance * cos - radius * along * along) / length)
     };

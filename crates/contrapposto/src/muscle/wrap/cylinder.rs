@@ -28,7 +28,7 @@ pub(super) fn wrap(radius: f64, length: f64, quadrant: Quadrant, from: &Vector3<
         Err(other) => return other,
     };
     let (mut first, mut second) = (touching.first, touching.second);
-    let angle = first.x.mul_add(second.y, -(first.y * second.x)).atan2(first.x * second.x + first.y * second.y);
+    let angle = libm::atan2(first.x.mul_add(second.y, -(first.y * second.x)), first.x * second.x + first.y * second.y);
     let turned = if touching.counterclockwise { angle } else { -angle }.rem_euclid(TAU);
     // A line that only just touches turns by nothing, not once round.
     let arc = radius * if turned > TAU - FULL_TURN { 0.0 } else { turned };
@@ -39,7 +39,7 @@ pub(super) fn wrap(radius: f64, length: f64, quadrant: Quadrant, from: &Vector3<
     if first.z.abs() > length / 2.0 && second.z.abs() > length / 2.0 {
         return Wrapping::Free;
     }
-    let contact = Contact { first, second, length: arc * slope.hypot(1.0) };
+    let contact = Contact { first, second, length: arc * libm::hypot(slope, 1.0) };
     if touching.crosses { Wrapping::Crosses(contact) } else { Wrapping::Touches(contact) }
 }
 

@@ -91,12 +91,12 @@ impl Helix {
     /// The angle that it turns. With its sign: for a turn of more than half a circle the other way, OpenSim's angle exceeds a circle.
     fn angle(&self) -> f64 {
         let (a, b) = (self.first, self.second);
-        let angle = (a.x * b.y - a.y * b.x).atan2(a.x * b.x + a.y * b.y);
+        let angle = libm::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
         if self.long { TAU - angle } else { angle }
     }
 
     fn length(&self) -> f64 {
-        (self.radius * self.angle()).hypot(self.second.z - self.first.z)
+        libm::hypot(self.radius * self.angle(), self.second.z - self.first.z)
     }
 
     /// The point at a share of it.
@@ -110,7 +110,7 @@ impl Helix {
 /// A point of tangency moved along the axis, unless the straight part and the helix, whose next point is `next`, meet there at one angle
 /// to the axis.
 fn slid(end: &Vector3<f64>, tangent: &Vector3<f64>, next: &Vector3<f64>) -> Option<Vector3<f64>> {
-    let to_axis = |v: Vector3<f64>| v.normalize().z.clamp(-1.0, 1.0).acos();
+    let to_axis = |v: Vector3<f64>| libm::acos(v.normalize().z.clamp(-1.0, 1.0));
     let bend = (to_axis(tangent - end) - to_axis(next - tangent)).abs();
     if bend <= OPENSIM_TANGENCY {
         return None;

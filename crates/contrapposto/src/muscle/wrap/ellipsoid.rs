@@ -52,14 +52,14 @@ fn across(v: &V) -> (V, V) {
 /// The number of a place of tangency: its angle about the direction of the point.
 fn number(from: &V, place: &V) -> f64 {
     let (e1, e2) = across(from);
-    place.dot(&e2).atan2(place.dot(&e1))
+    libm::atan2(place.dot(&e2), place.dot(&e1))
 }
 
 impl Surface for Ellipsoid {
     fn tangent(&self, from: &V, number: f64) -> Option<State> {
         let distance = from.norm();
         let (e1, e2) = across(from);
-        let (sin, cos) = number.sin_cos();
+        let (sin, cos) = libm::sincos(number);
         let (out, round) = (from / distance, e1 * cos + e2 * sin);
         let (along, off) = (1.0 / distance, (1.0 - 1.0 / (distance * distance)).max(0.0).sqrt());
         Some(State { place: along * out + off * round, direction: along * round - off * out, length: 0.0 })
@@ -113,7 +113,7 @@ impl Ellipsoid {
         let aside = along.cross(&above);
         let mut ends: Option<(Section, Section)> = None;
         for plane in 0..GEODESIC_PLANES {
-            let (sin, cos) = (TAU * plane as f64 / GEODESIC_PLANES as f64).sin_cos();
+            let (sin, cos) = libm::sincos(TAU * plane as f64 / GEODESIC_PLANES as f64);
             let up = cos * above + sin * aside;
             let normal = along.cross(&up);
             let center = normal.dot(&foot) * normal;
@@ -140,12 +140,12 @@ impl Ellipsoid {
     /// The section whose circle has a center and a radius, over the side of `up`.
     fn section(&self, ends: [&V; 2], center: V, radius: f64, (along, up): (V, V)) -> Section {
         let [at1, at2] = ends.map(|p| (p.dot(&along), p.dot(&up)));
-        let reach = |(x, y): (f64, f64)| (radius / x.hypot(y)).min(1.0).acos();
-        let start = at1.1.atan2(at1.0).rem_euclid(TAU) - reach(at1);
-        let end = at2.1.atan2(at2.0) + reach(at2);
+        let reach = |(x, y): (f64, f64)| libm::acos((radius / libm::hypot(x, y)).min(1.0));
+        let start = libm::atan2(at1.1, at1.0).rem_euclid(TAU) - reach(at1);
+        let end = libm::atan2(at2.1, at2.0) + reach(at2);
         let angle = (start - end).rem_euclid(TAU);
         let place = |turned: f64| {
-            let (sin, cos) = (start - turned).sin_cos();
+            let (sin, cos) = libm::sincos(start - turned);
             center + radius * (cos * along + sin * up)
         };
         let distance = |a: &V, b: &V| (a - b).component_mul(&self.half_axes).norm();

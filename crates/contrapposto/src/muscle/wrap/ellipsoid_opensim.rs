@@ -159,12 +159,12 @@ impl Section {
         hub[axis] = -self.offset / self.normal[axis];
         let unit = |v: V| v.try_normalize(f64::EPSILON).unwrap_or_default();
         let (out, other) = (unit(self.first - hub), unit(self.second - hub));
-        let angle = out.dot(&other).clamp(-1.0, 1.0).acos();
+        let angle = libm::acos(out.dot(&other).clamp(-1.0, 1.0));
         let step = if far { angle - TAU } else { angle } / f64::from(pieces);
         let across = unit(out.cross(&other)).cross(&out);
         let from_hub = hub.component_div(&self.axes);
         let point = |number: u32| {
-            let (sin, cos) = (f64::from(number) * step).sin_cos();
+            let (sin, cos) = libm::sincos(f64::from(number) * step);
             let ray = out * cos + across * sin;
             let scaled = ray.component_div(&self.axes);
             let (a, b, c) = (scaled.norm_squared(), scaled.dot(&from_hub), from_hub.norm_squared() - 1.0);

@@ -61,7 +61,7 @@ fn on_ellipse([a, b]: [f64; 2], [u, v]: [f64; 2]) -> (f64, f64) {
         }
         (false, false) => {
             let inside = (u / a).powi(2) + (v / b).powi(2) < 1.0;
-            let mut t = if inside { 0.0 } else { a.max(b) * u.hypot(v) };
+            let mut t = if inside { 0.0 } else { a.max(b) * libm::hypot(u, v) };
             let (mut p, mut q) = (aa + t, bb + t);
             for _ in 0..NEAREST_STEPS {
                 (p, q) = (aa + t, bb + t);

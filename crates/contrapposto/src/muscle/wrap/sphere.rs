@@ -30,9 +30,9 @@ pub(super) fn wrap(
     let (u1, u2) = (from / d1, to / d2);
     let Some(axis) = axis(&u1, &u2, &(to - from), quadrant, rule) else { return Wrapping::Free };
     // Angles at the center between an end and the point where its line touches.
-    let (b1, b2) = ((radius / d1).min(1.0).acos(), (radius / d2).min(1.0).acos());
-    let turned = |u: &Vector3<f64>, angle: f64| radius * (u * angle.cos() + axis.cross(u) * angle.sin());
-    let between = axis.dot(&u1.cross(&u2)).atan2(u1.dot(&u2)).rem_euclid(TAU);
+    let (b1, b2) = (libm::acos((radius / d1).min(1.0)), libm::acos((radius / d2).min(1.0)));
+    let turned = |u: &Vector3<f64>, angle: f64| radius * (u * libm::cos(angle) + axis.cross(u) * libm::sin(angle));
+    let between = libm::atan2(axis.dot(&u1.cross(&u2)), u1.dot(&u2)).rem_euclid(TAU);
     let near = (turned(&u1, b1), turned(&u2, -b2), between - b1 - b2);
     let far = (turned(&u1, -b1), turned(&u2, b2), TAU - between - b1 - b2);
     let (mut crosses, mut chosen) = (false, near);

@@ -37,7 +37,7 @@ impl WrapShape {
         match self {
             Self::Cylinder { .. } => [[1.0, length], [0.0, 1.0]],
             Self::Sphere { radius } => {
-                let (sin, cos) = (length / radius).sin_cos();
+                let (sin, cos) = libm::sincos(length / radius);
                 [[cos, radius * sin], [-sin / radius, cos]]
             }
             Self::Ellipsoid { .. } | Self::Torus { .. } => self.integrated(place, direction, length),

@@ -17,7 +17,7 @@ type V = Vector3<f64>;
 pub(super) fn wrap(tube: f64, circle: f64, quadrant: Quadrant, from: &V, to: &V) -> Wrapping {
     let Wrapping::Touches(guess) = over_tube(tube, circle, quadrant, from, to) else { return Wrapping::Free };
     let near = |place: &V| {
-        let angle = place.y.atan2(place.x);
+        let angle = libm::atan2(place.y, place.x);
         let mut torus = Torus { tube, circle, upper: true };
         let miss = |torus: &Torus| torus.tangent(from, angle).map(|state| (state.place - place).norm_squared());
         let above = miss(&torus)?;
@@ -40,9 +40,9 @@ fn through_hole(radius: f64, from: &V, to: &V) -> Option<V> {
         return None;
     }
     let straight = from + from.z / (from.z - to.z) * (to - from);
-    let mut angle = straight.y.atan2(straight.x);
+    let mut angle = libm::atan2(straight.y, straight.x);
     for _ in 0..TORUS_BENDS {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         let (place, slope) = (radius * V::new(cos, sin, 0.0), radius * V::new(-sin, cos, 0.0));
         let (mut first, mut second) = (0.0, 0.0);
         for end in [from, to] {
@@ -55,7 +55,7 @@ fn through_hole(radius: f64, from: &V, to: &V) -> Option<V> {
         let step = if second > 0.0 { -first / second } else { -first.signum() * GEODESIC_TURN };
         angle += step.clamp(-GEODESIC_TURN, GEODESIC_TURN);
     }
-    Some(radius * V::new(angle.cos(), angle.sin(), 0.0))
+    Some(radius * V::new(libm::cos(angle), libm::sin(angle), 0.0))
 }
 
 struct Torus {
@@ -67,17 +67,17 @@ struct Torus {
 
 impl Surface for Torus {
     fn tangent(&self, from: &V, number: f64) -> Option<State> {
-        let (sin, cos) = number.sin_cos();
+        let (sin, cos) = libm::sincos(number);
         let out = V::new(cos, sin, 0.0);
         // In the section across the tube: the point as seen from the middle of the tube.
         let (beyond, above) = (from.dot(&out) - self.circle, from.z);
-        let distance = beyond.hypot(above);
+        let distance = libm::hypot(beyond, above);
         if distance <= self.tube {
             return None;
         }
-        let half = (self.tube / distance).acos();
-        let turned = above.atan2(beyond) + if self.upper { half } else { -half };
-        let place = (self.circle + self.tube * turned.cos()) * out + self.tube * turned.sin() * V::z();
+        let half = libm::acos(self.tube / distance);
+        let turned = libm::atan2(above, beyond) + if self.upper { half } else { -half };
+        let place = (self.circle + self.tube * libm::cos(turned)) * out + self.tube * libm::sin(turned) * V::z();
         let direction = (place - from).try_normalize(0.0)?;
         Some(State { place, direction, length: 0.0 })
     }
