@@ -38,59 +38,31 @@ function natively(requests) {
   return stdout.trimEnd().split("\n");
 }
 
-// The greatest difference of two answers, in shares of numbers above 1; texts and shapes must be equal.
-function difference(a, b, path) {
-  if (typeof a === "number" && typeof b === "number") return Math.abs(a - b) / Math.max(1, Math.abs(a));
-  if (typeof a === "object" && a !== null && b !== null && typeof b === "object") {
-    assert.deepEqual(Object.keys(a), Object.keys(b), path);
-    return Math.max(0, ...Object.keys(a).map((key) => difference(a[key], b[key], `${path}.${key}`)));
-  }
-  assert.equal(a, b, path);
-  return 0;
-}
-
-// The answers of both to the same requests.
+// The answers of both to the same requests, which must be the same texts, to the last digit of each number.
 function both(requests) {
-  const [ours, theirs] = [inModule(requests), natively(requests)].map((answers) => answers.map((text) => JSON.parse(text)));
+  const [ours, theirs] = [inModule(requests), natively(requests)];
   assert.equal(ours.length, theirs.length);
-  ours.forEach((answer, i) => assert.notEqual(answer.is, "refused", `${JSON.stringify(requests[i])}: ${answer.sentence}`));
-  return [ours, theirs];
+  ours.forEach((answer, i) => {
+    assert.ok(answer === theirs[i], `answer ${i} to ${JSON.stringify(requests[i]).slice(0, 100)} differs`);
+    assert.ok(!answer.startsWith('{"is":"refused"'), answer);
+  });
+  return ours.map((answer) => JSON.parse(answer));
 }
 
-test("200 drags, torques of a joint, a load: the module agrees with the native program to 1e-9", (t) => {
-  const [ours, theirs] = both(drags(200));
-  const greatest = Math.max(...ours.map((answer, i) => difference(answer, theirs[i], String(i))));
-  t.diagnostic(`greatest difference ${greatest}`);
-  assert.ok(greatest < 1e-9, String(greatest));
+test("200 drags, torques of a joint, a load: the module and the native program give the same bytes", () => {
+  const answers = both(drags(200));
+  assert.equal(answers[0].is, "scene");
 });
 
-// Probably the libraries of the two differ in the last digit of sines and exponentials. Where a body descends to its posture of least effort, a search
-// passes through postures that depend on that digit; the posture that it comes to does not.
-test("ten minutes of stand-relaxed: the same decisions; postures to 1e-9, torques to 1e-8, but within one second of descent", (t) => {
-  const [ours, theirs] = both(run("stand-relaxed", 600));
-  const told = (answers) => answers.map(({ asking, decisions, ended }) => ({ asking, decisions, ended }));
-  assert.deepEqual(told(ours), told(theirs));
-  const sentences = (answers) => answers.at(-1).log.map(({ time, sentence }) => [time, sentence]);
-  assert.deepEqual(sentences(ours), sentences(theirs));
-  assert.deepEqual(ours.at(-1).shown.verdict.sentence, theirs.at(-1).shown.verdict.sentence);
-  // Sine and cosine of the two differ in last digits, so descents end at the same minimum, not at the same digits of it. Tissue and weight make
-  // torques of a difference of posture: up to about 100 N m of a radian.
-  const apart = ({ shown: a }, { shown: b }) =>
-    Math.max(difference(a.q, b.q, "q"), ...["external", "passive", "active"].map((key) => 0.1 * difference(a[key], b[key], key)));
-  const differences = ours.slice(1).map((answer, i) => apart(answer, theirs[i + 1]));
-  const far = differences.filter((one) => one > 1e-9);
-  t.diagnostic(`answers that differ by more: ${far.length} of ${differences.length}; of the others ${Math.max(...differences.filter((one) => one <= 1e-9))}`);
-  assert.ok(far.length <= 1, `${far.length} seconds differ, by ${Math.max(...far)} at most`);
-  assert.ok(differences.at(-1) < 1e-9);
+test("ten minutes of stand-relaxed: the module and the native program give the same bytes", () => {
+  const last = both(run("stand-relaxed", 600)).at(-1);
+  assert.ok(last.log.length > 1, JSON.stringify(last.log));
 });
 
-test("settling comes to the same effort and verdict", (t) => {
-  const requests = [{ do: "open", scenario: "" }, ...Array.from({ length: 100 }, () => ({ do: "settle" }))];
-  const [ours, theirs] = both(requests).map((answers) => answers.at(-1));
-  const effort = ({ load }) => load.reduce((sum, share) => sum + share * share, 0);
-  t.diagnostic(`efforts ${effort(ours)}, ${effort(theirs)}`);
-  assert.ok(Math.abs(effort(ours) - effort(theirs)) < 1e-6);
-  assert.equal(ours.verdict.kind, theirs.verdict.kind);
+test("settling: the module and the native program give the same bytes", () => {
+  const answers = both([{ do: "open", scenario: "" }, ...Array.from({ length: 100 }, () => ({ do: "settle" }))]);
+  const [first, last] = [answers[1], answers.at(-1)].map(({ load }) => load.reduce((sum, share) => sum + share * share, 0));
+  assert.ok(last < first, `effort ${first}, ${last}`);
 });
 
 test("the same requests twice give the same bytes", () => {

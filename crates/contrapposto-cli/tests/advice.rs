@@ -77,7 +77,7 @@ fn nearer(text: &str) -> [f64; 3] {
     kinematics.update(&scenario.model, &scenario.start).unwrap();
     let center = kinematics.center_of_mass(&scenario.model).unwrap();
     let (x, z) = (center.x - TARGET[0], center.z - TARGET[2]);
-    let share = 0.1 / x.hypot(z);
+    let share = 0.1 / libm::hypot(x, z);
     [TARGET[0] + share * x, TARGET[1], TARGET[2] + share * z]
 }
 

@@ -39,7 +39,7 @@ fn parameters_by_muscle_group_reach_the_adult_and_imported_models() {
     let held = |model: &str, more: &[&str]| {
         json(&[&["assess", model, &hold, "--fixed-root", "--load", "hand_r 8kg", "--json"], more].concat())
     };
-    let time = |f: f64, r: f64, load: f64| -(1.0 - r * (1.0 - load) / (f * load)).ln() / r;
+    let time = |f: f64, r: f64, load: f64| -libm::log(1.0 - r * (1.0 - load) / (f * load)) / r;
     let by_group = ["--fatigue", "muscle_group"];
     let any = ["--fatigue", "muscle_group", "--fatigue-sex", "any"];
     let rows: [(&str, &[&str], &str, f64, f64); 6] = [
@@ -340,7 +340,7 @@ fn a_swing_is_no_posture() {
     let mut text = "time,hip_flexion_r_deg\n".to_owned();
     for i in 0..100 {
         let time = 0.01 * f64::from(i);
-        writeln!(text, "{time},{}", 40.0 * (10.0 * time).sin()).unwrap();
+        writeln!(text, "{time},{}", 40.0 * libm::sin(10.0 * time)).unwrap();
     }
     let swing = write(folder.path(), "swing.csv", &text);
     let message = run(&["assess", "adult", &swing, "--static"]).stderr;

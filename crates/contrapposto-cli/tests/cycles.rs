@@ -18,7 +18,7 @@ fn curls(folder: &Path, name: &str, amplitudes: &[f64]) -> String {
     let mut text = "time,elbow_flex_r_deg\n".to_owned();
     for i in 0..=amplitudes.len() * STEPS {
         let amplitude = amplitudes[(i / STEPS).min(amplitudes.len() - 1)];
-        let sine = (TAU * (i % STEPS) as f64 / STEPS as f64).sin();
+        let sine = libm::sin(TAU * (i % STEPS) as f64 / STEPS as f64);
         writeln!(text, "{},{}", 0.02 * i as f64, 60.0 + amplitude * sine).unwrap();
     }
     write(folder, name, &text)
@@ -60,7 +60,7 @@ fn mean_and_deviation_of_known_cycles_stand_in_json_page_and_words() {
     let [angles, deviations] = ["mean", "deviation"].map(|key| numbers(&curves["angle_deg"][key]));
     assert_eq!((angles.len(), deviations.len()), (101, 101));
     for percent in 0..=100 {
-        let sine = (TAU * percent as f64 / 100.0).sin();
+        let sine = libm::sin(TAU * percent as f64 / 100.0);
         assert!((angles[percent] - (60.0 + 30.0 * sine)).abs() < 1e-6, "{percent}: {}", angles[percent]);
         assert!((deviations[percent] - 10.0 * sine.abs()).abs() < 1e-6, "{percent}: {}", deviations[percent]);
     }

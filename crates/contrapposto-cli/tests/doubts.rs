@@ -51,7 +51,7 @@ fn a_walking_knee_with_the_opposite_sign_is_named() {
         let mut text = "time,knee_angle_r_deg\n".to_owned();
         for i in 0..=100 {
             let phase = std::f64::consts::TAU * f64::from(i) / 50.0;
-            text += &format!("{},{}\n", 0.02 * f64::from(i), sign * 60.0 * phase.sin().max(0.0));
+            text += &format!("{},{}\n", 0.02 * f64::from(i), sign * 60.0 * libm::sin(phase).max(0.0));
         }
         let motion = write(folder.path(), "stride.csv", &text);
         let said = run(&["assess", "adult", &motion, "--support", "calcn_r,calcn_l", "--static"]).stderr;
@@ -157,7 +157,7 @@ fn torques_of_a_fast_motion_are_warned_of_and_say_that_they_are_at_rest() {
     let rows: String = (0..100)
         .map(|i| {
             let time = 0.01 * f64::from(i);
-            format!("{time},{}\n", 0.2 * (20.0 * time).sin())
+            format!("{time},{}\n", 0.2 * libm::sin(20.0 * time))
         })
         .collect();
     let shaken = write(folder.path(), "shaken.csv", &format!("time,pelvis_tx_m\n{rows}"));
@@ -464,7 +464,7 @@ fn dynamics_adds_inertia_to_the_external_torque_and_says_so() {
         (0..60)
             .map(|i| {
                 let time = 0.02 * f64::from(i);
-                format!("{time},{}\n", 40.0 + size * (5.0 * time).sin())
+                format!("{time},{}\n", 40.0 + size * libm::sin(5.0 * time))
             })
             .collect()
     };
@@ -485,7 +485,7 @@ fn dynamics_adds_inertia_to_the_external_torque_and_says_so() {
         let sum = elbow(&rest, i, "external").unwrap() + inertia;
         assert!((elbow(&moving, i, "external").unwrap() - sum).abs() < 1e-9 && elbow(&rest, i, "inertia_nm").is_none());
         // -I alpha: forearm and hand about the elbow have about 0.07 kg m2, 2 kg in the hand at 0.3 m to 0.4 m 0.18 to 0.32.
-        let alpha = -(30f64.to_radians()) * 25.0 * (0.1 * i as f64).sin();
+        let alpha = -(30f64.to_radians()) * 25.0 * libm::sin(0.1 * i as f64);
         let moment = -inertia / alpha;
         assert!((0.2..0.5).contains(&moment), "{moment} kg m2 at frame {i}");
     }
@@ -532,7 +532,7 @@ fn doubts_about_the_filter_of_a_motion_are_told_by_name() {
         assert_eq!(run.code, 0, "{}", run.stderr);
         (run.stderr, run.stdout)
     };
-    let sine = |time: f64| 10.0 * (6.0 * time).sin();
+    let sine = |time: f64| 10.0 * libm::sin(6.0 * time);
     let (long, short) = (swing("long.csv", 300, &sine), swing("short.csv", 80, &sine));
     let (quiet, _) = said(&long, &[]);
     assert!(!quiet.contains("padding") && !quiet.contains("below two over"), "{quiet}");
@@ -581,7 +581,7 @@ fn assess_of_a_fast_motion_counts_inertia_in_its_first_sentence_unless_static_is
     let rows: String = (0..100)
         .map(|i| {
             let time = 0.02 * f64::from(i);
-            format!("{time},{},{}\n", 0.05 * (8.0 * time).sin(), 20.0 + 10.0 * (8.0 * time).cos())
+            format!("{time},{},{}\n", 0.05 * libm::sin(8.0 * time), 20.0 + 10.0 * libm::cos(8.0 * time))
         })
         .collect();
     let bounced = write(folder.path(), "bounced.csv", &format!("time,pelvis_ty_m,hip_flexion_r_deg\n{rows}"));

@@ -60,7 +60,7 @@ impl Line {
 }
 
 fn log_uniform(random: &mut impl Rng, from: f64, to: f64) -> f64 {
-    10f64.powf(random.random_range(from..to))
+    libm::pow(10.0, random.random_range(from..to))
 }
 
 fn one_of<const N: usize>(random: &mut impl Rng, values: [f64; N]) -> f64 {
@@ -80,7 +80,7 @@ fn random_line(random: &mut impl Rng) -> Line {
     let range = [min, min + width];
     let width = range[1] - range[0];
     // Steep ends stay within what a torque may be (1e150 N m).
-    let steepest = (200.0 / width.to_radians()).log10();
+    let steepest = libm::log10(200.0 / width.to_radians());
     let mut rate = || if wild { log_uniform(random, -1.0, steepest.min(3.0)) } else { log_uniform(random, 0.2, 1.4) };
     let (b_l, b_u) = (rate(), rate());
     let mut torque = || {
@@ -190,8 +190,8 @@ fn json_lines(run: &Run) -> Vec<Value> {
 fn rounding_of(problem: &oracle::Problem, angle: f64) -> f64 {
     let oracle::Curve { a_l, b_l, q_l, a_u, b_u, q_u, k, q_mid } = problem.curve;
     let terms = [
-        a_l * (-b_l * (angle - q_l)).exp() * (1.0 + b_l * (angle.abs() + q_l.abs())),
-        a_u * (b_u * (angle - q_u)).exp() * (1.0 + b_u * (angle.abs() + q_u.abs())),
+        a_l * libm::exp(-b_l * (angle - q_l)) * (1.0 + b_l * (angle.abs() + q_l.abs())),
+        a_u * libm::exp(b_u * (angle - q_u)) * (1.0 + b_u * (angle.abs() + q_u.abs())),
         k * (angle.abs() + q_mid.abs()),
         problem.tau_e.abs(),
         problem.d_tau_e.abs() * (angle.abs() + problem.q_c.abs()),

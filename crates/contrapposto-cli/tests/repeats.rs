@@ -11,7 +11,7 @@ fn curl(folder: &std::path::Path, frames: u32) -> String {
     let mut text = "time,elbow_flex_r_deg\n".to_owned();
     for i in 0..=frames {
         let turn = 2.0 * std::f64::consts::PI * f64::from(i) / 40.0;
-        writeln!(text, "{},{}", 0.05 * f64::from(i), 60.0 - 30.0 * turn.cos()).unwrap();
+        writeln!(text, "{},{}", 0.05 * f64::from(i), 60.0 - 30.0 * libm::cos(turn)).unwrap();
     }
     write(folder, &format!("curl-{frames}.csv"), &text)
 }

@@ -26,7 +26,7 @@ fn assess_of_a_robot_uses_its_effort_limits_and_no_motor_tires() {
     let ankle = group(&report, "left_ankle", "positive");
     let other = group(&report, "left_ankle", "negative");
     let load = |group: &Value| group["peak_load"]["value"].as_f64().unwrap();
-    let expected = 9.81 * 0.03 * 1f64.sin() / 60.0;
+    let expected = 9.81 * 0.03 * libm::sin(1.0) / 60.0;
     assert!((load(ankle) + load(other) - expected).abs() < 1e-12, "{ankle} {other}, {expected}");
     for group in [ankle, other] {
         assert_eq!((group["fatigue_at_end"].as_f64(), &group["exhausted_at_s"]), (Some(0.0), &Value::Null), "{group}");

@@ -48,12 +48,12 @@ fn walk(read: &SourcedModel) -> Vec<Posture> {
         let mut posture = model.default_posture();
         let phase = i as f64 * 0.15;
         let values = posture.values_mut();
-        values[at("hip_flexion_r")] = 0.3 + 0.4 * phase.sin();
-        values[at("hip_flexion_l")] = 0.3 - 0.4 * phase.sin();
-        values[at("knee_angle_r")] = 0.6 + 0.5 * phase.cos();
-        values[at("knee_angle_l")] = 0.6 - 0.5 * phase.cos();
-        values[at("elbow_flex_r")] = 0.7 + 0.2 * phase.sin();
-        values[at("pelvis_tilt")] = 0.05 * phase.cos();
+        values[at("hip_flexion_r")] = 0.3 + 0.4 * libm::sin(phase);
+        values[at("hip_flexion_l")] = 0.3 - 0.4 * libm::sin(phase);
+        values[at("knee_angle_r")] = 0.6 + 0.5 * libm::cos(phase);
+        values[at("knee_angle_l")] = 0.6 - 0.5 * libm::cos(phase);
+        values[at("elbow_flex_r")] = 0.7 + 0.2 * libm::sin(phase);
+        values[at("pelvis_tilt")] = 0.05 * libm::cos(phase);
         values[at("pelvis_tx")] = 0.02 * i as f64;
         posture
     };

@@ -183,7 +183,7 @@ fn forces_of_shared_muscles_are_the_support_function_of_their_zonotope() {
 #[test]
 fn one_muscle_on_each_side_of_a_joint_gives_the_share_of_strength_that_the_joint_gives() {
     let body = Body::new(&arm(), &[0.4]);
-    let across = Vector3::new(0.4f64.cos(), 0.4f64.sin(), 0.0);
+    let across = Vector3::new(libm::cos(0.4), libm::sin(0.4), 0.0);
     let at_rest = body.active(Vector3::zeros())[0];
     let muscles = body.muscles.musculature().muscles.iter().zip(body.muscles.forces());
     let torques: Vec<f64> =

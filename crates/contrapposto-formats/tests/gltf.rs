@@ -171,7 +171,7 @@ fn keys_of_all_kinds_scales_and_matrices_are_read() {
         let upright = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
         assert!(placed[2].rotation.angle_to(&upright) < 1e-6);
         rig.place(Some(1), &mut placed);
-        let (sin, cos) = (std::f64::consts::FRAC_PI_2 / 10.0).sin_cos();
+        let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_2 / 10.0);
         let (x, y) = (0.01 * at_tenth * cos, 1.0 + 0.01 * at_tenth * sin);
         assert!(near(placed[2].translation.vector, x, y, 0.0), "{kind}: {} {x} {y}", placed[2].translation.vector);
         rig.place(Some(10), &mut placed);

@@ -100,7 +100,7 @@ fn a_free_heel_rises_about_the_toes_and_the_ball_has_the_weight() {
         assert!(foot.weight > 1.0 && foot.weight <= 0.15 * 60.0 * 9.81 + 0.1, "{}", foot.weight);
         assert!((-1e-4..=long + 1e-4).contains(&x) && z.abs() <= HALF_BREADTH + 1e-4, "{x} {z}");
         assert!(foot.tips.iter().all(|tip| tip.abs() < 1e-5), "{:?}", foot.tips);
-        let height = (BALL_X - HEEL_X) * foot.toes.sin();
+        let height = (BALL_X - HEEL_X) * libm::sin(foot.toes);
         assert!(foot.heel.iter().all(|heel| (heel - height).abs() < 1e-5), "{:?} {height}", foot.heel);
         assert!(height >= -1e-9, "{height}");
         highest = highest.max(height);

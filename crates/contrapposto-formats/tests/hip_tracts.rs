@@ -62,7 +62,7 @@ fn passive(tissue: HipTissue, degrees: f64) -> [f64; 2] {
 #[test]
 fn muscles_and_band_carry_the_relaxed_leg_at_the_angle_of_the_test() {
     for (tissue, degrees) in [(HipTissue::Mean, 24.6), (HipTissue::Stiff, 17.3), (HipTissue::Flexible, 31.9)] {
-        let weight = LEG.0 * 9.806_65 * LEG.1 * f64::to_radians(degrees).cos();
+        let weight = LEG.0 * 9.806_65 * LEG.1 * libm::cos(f64::to_radians(degrees));
         let [muscles, law] = passive(tissue, degrees);
         let [alone, _] = passive(HipTissue::Off, degrees);
         println!("{degrees}: weight {weight:.3}, muscles alone {alone:.3}, with the band {muscles:.3} N m");

@@ -34,7 +34,7 @@ fn close(a: [f64; 3], b: [f64; 3]) {
 fn a_file_has_the_strength_and_the_passive_torque_of_its_own_mass() {
     let body = filled(&Person::default());
     assert!((body.model.mass() - 60.0).abs() < 0.01);
-    let stature = 1.741 * (body.model.mass() / 73.0).cbrt();
+    let stature = 1.741 * libm::cbrt(body.model.mass() / 73.0);
     let man = adult(&Adult { stature, mass: body.model.mass(), ..Adult::default() }).unwrap();
     close(knee(&body.model), knee(&man));
     assert!(

@@ -88,7 +88,7 @@ fn lean(model: &Model, posture: &Posture) -> f64 {
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, posture).unwrap();
     let up = kinematics.placement(model, model.segment("torso").unwrap()).rotation * nalgebra::Vector3::y();
-    up.y.acos()
+    libm::acos(up.y)
 }
 
 /// One row of the table in `docs/strength.md`.

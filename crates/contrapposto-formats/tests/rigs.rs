@@ -359,7 +359,7 @@ fn swapped_sides_a_first_frame_apart_and_bodies_that_turn_round_are_noticed() {
     let targets = Targets::new(&away, &assignment, &fitted, &all);
     assert!(targets.is_moved() && (targets.turned().to_degrees().abs() - 170.0).abs() < 1.0, "{}", targets.turned());
     let hips = targets.places(0)[0].unwrap();
-    assert!(hips.x.hypot(hips.z) < 1e-9 && (hips.y - 1.0).abs() < 0.01, "{hips}");
+    assert!(libm::hypot(hips.x, hips.z) < 1e-9 && (hips.y - 1.0).abs() < 0.01, "{hips}");
     // The second point of the pelvis lies 0.1 m ahead of the first.
     let ahead = targets.places(0)[1].unwrap() - hips;
     assert!(ahead.x > 0.099, "{ahead}");

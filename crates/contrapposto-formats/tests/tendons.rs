@@ -89,15 +89,15 @@ fn close(found: (f64, f64), expected: (f64, f64)) {
 
 /// Flat length between points at 0.3 and 0.4 m from the axis, `angle` apart, round a radius of 0.05 m.
 fn round(angle: f64) -> f64 {
-    let part = |distance: f64| (distance * distance - 0.0025f64).sqrt() - 0.05 * (0.05 / distance).acos();
+    let part = |distance: f64| (distance * distance - 0.0025f64).sqrt() - 0.05 * libm::acos(0.05 / distance);
     part(0.3) + part(0.4) + 0.05 * angle
 }
 
 #[test]
 fn a_straight_tendon_has_the_length_and_arm_of_the_cosine_rule() {
     let found = at(&along(r#"<site site="base"/><site site="tip"/>"#), 0.7);
-    let length = (0.25 - 0.24 * 0.7f64.cos()).sqrt();
-    close(found, (length, -0.12 * 0.7f64.sin() / length));
+    let length = (0.25 - 0.24 * libm::cos(0.7)).sqrt();
+    close(found, (length, -0.12 * libm::sin(0.7) / length));
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn a_side_site_makes_the_line_go_the_other_way_round() {
 #[test]
 fn a_line_along_a_cylinder_is_a_helix() {
     let found = at(&along(r#"<site site="high"/><geom geom="cylinder"/><site site="tip"/>"#), 2.9);
-    let length = round(2.9).hypot(0.2);
+    let length = libm::hypot(round(2.9), 0.2);
     close(found, (length, -0.05 * round(2.9) / length));
 }
 
@@ -130,8 +130,8 @@ fn a_line_along_a_cylinder_is_a_helix() {
 fn a_side_site_inside_makes_the_line_touch_from_within() {
     for shape in ["cylinder", "sphere"] {
         let elements = format!(r#"<site site="base"/><geom geom="{shape}" sidesite="core"/><site site="same"/>"#);
-        let half = (0.09 + 0.0025 - 0.03 * 0.7f64.cos()).sqrt();
-        close(at(&along(&elements), 1.4), (2.0 * half, -0.015 * 0.7f64.sin() / half));
+        let half = (0.09 + 0.0025 - 0.03 * libm::cos(0.7)).sqrt();
+        close(at(&along(&elements), 1.4), (2.0 * half, -0.015 * libm::sin(0.7) / half));
     }
 }
 
@@ -139,8 +139,8 @@ fn a_side_site_inside_makes_the_line_touch_from_within() {
 fn branches_behind_a_pulley_count_by_their_share() {
     let elements = r#"<site site="base"/><site site="high"/><pulley divisor="2"/><site site="base"/><site site="tip"/>
         <pulley divisor="4"/><site site="base"/><site site="tip"/>"#;
-    let length = (0.25 - 0.24 * 0.7f64.cos()).sqrt();
-    close(at(&along(elements), 0.7), (0.2 + 0.75 * length, -0.09 * 0.7f64.sin() / length));
+    let length = (0.25 - 0.24 * libm::cos(0.7)).sqrt();
+    close(at(&along(elements), 0.7), (0.2 + 0.75 * length, -0.09 * libm::sin(0.7) / length));
 }
 
 #[test]
@@ -266,7 +266,7 @@ fn moment_arms_in_200_postures_are_minus_the_slopes_of_the_lengths() {
 #[test]
 fn odd_surfaces_and_places_leave_a_straight_line_and_no_nan() {
     let around = |side: &str| along(&format!(r#"<site site="base"/><geom geom="sphere" {side}/><site site="tip"/>"#));
-    let straight = |turn: f64| (0.25 - 0.24 * turn.cos()).sqrt();
+    let straight = |turn: f64| (0.25 - 0.24 * libm::cos(turn)).sqrt();
     for side in ["", r#"sidesite="above""#, r#"sidesite="core""#] {
         let mut imported = around(side);
         // No radius; and one that contains an end.

@@ -412,7 +412,7 @@ step_s = 0.5
         hands.iter().fold((0.0_f64, 0.0_f64), |(distance, angle), &segment| {
             let (from, to) = (start.placement(model, segment), end.placement(model, segment));
             let moved = (to.translation.vector - from.translation.vector).norm();
-            (distance.hypot(moved), angle.hypot(from.rotation.angle_to(&to.rotation)))
+            (libm::hypot(distance, moved), libm::hypot(angle, from.rotation.angle_to(&to.rotation)))
         })
     };
     let (distance, angle) = slid(&greatest.1);

@@ -13,17 +13,17 @@ const RANGE_DEG: (f64, f64) = (0.0, 150.0);
 
 /// Passive torque of the elbow, N m, at an angle in radians.
 fn passive(q: f64) -> f64 {
-    12.67 * (-19.92 * q).exp() - 9.324 * (3.811 * (q - 2.618)).exp()
+    12.67 * libm::exp(-19.92 * q) - 9.324 * libm::exp(3.811 * (q - 2.618))
 }
 
 /// Slope of the passive torque, N m/rad.
 fn passive_slope(q: f64) -> f64 {
-    -19.92 * 12.67 * (-19.92 * q).exp() - 3.811 * 9.324 * (3.811 * (q - 2.618)).exp()
+    -19.92 * 12.67 * libm::exp(-19.92 * q) - 3.811 * 9.324 * libm::exp(3.811 * (q - 2.618))
 }
 
 /// External torque of the forearm's weight, N m.
 fn external(q: f64) -> f64 {
-    -2.9 * q.cos()
+    -2.9 * libm::cos(q)
 }
 
 fn active(degrees: f64) -> f64 {
@@ -41,7 +41,7 @@ fn at_angles(f: impl Fn(f64) -> f64) -> Vec<f64> {
 
 /// Trunk, upper arm forward, forearm and hand bent by the angle.
 fn arm(label: &str, degrees: f64, role: SketchRole) -> PostureSketch {
-    let (sin, cos) = degrees.to_radians().sin_cos();
+    let (sin, cos) = libm::sincos(degrees.to_radians());
     let along = |length: f64| [0.28 + length * cos, length * sin];
     PostureSketch {
         label: label.to_owned(),
@@ -110,9 +110,9 @@ fn elbow_passive() -> Figure {
 fn elbow_in_time() -> Figure {
     let time_s: Vec<f64> = (0..=1200).map(|i| f64::from(i) * 0.1).collect();
     let angle_deg: Vec<f64> =
-        time_s.iter().map(|t| if *t < 40.0 { 20.0 } else { 4.3 + 15.7 * (-(t - 40.0) / 8.0).exp() }).collect();
+        time_s.iter().map(|t| if *t < 40.0 { 20.0 } else { 4.3 + 15.7 * libm::exp(-(t - 40.0) / 8.0) }).collect();
     let at_time = |f: fn(f64) -> f64| angle_deg.iter().map(|a| f(a.to_radians())).collect();
-    let fatigue = |t: f64| if t < 40.0 { 0.6 * t / 40.0 } else { 0.6 * (-(t - 40.0) / 50.0).exp() };
+    let fatigue = |t: f64| if t < 40.0 { 0.6 * t / 40.0 } else { 0.6 * libm::exp(-(t - 40.0) / 50.0) };
     time_line(&TimeLine {
         title: "Elbow, passive strategy".to_owned(),
         subtitle: "relief begins at fatigue 0.6 and ends at 0.2".to_owned(),

@@ -146,7 +146,7 @@ mod tests {
         assert_eq!(order(&[near(), far()]), [1, 0]);
         // Three bars, each above the next.
         let bar = |angle: f64| {
-            let (sin, cos) = angle.sin_cos();
+            let (sin, cos) = libm::sincos(angle);
             let [a, b] = [-1.0, 1.0].map(|end: f64| [0.3 * -sin + end * cos, 0.3 * cos + end * sin, 0.3 * end, 0.01]);
             Solid::new(&[a, b])
         };

@@ -214,7 +214,7 @@ mod tests {
 
     fn round(force: impl Fn(usize) -> f64) -> Vec<Spoke> {
         let spoke = |k: usize| {
-            let (sin, cos) = (std::f64::consts::TAU * k as f64 / 12.0).sin_cos();
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / 12.0);
             Spoke { direction: [cos, sin, 0.0], force: force(k), limit: k, marked: k.is_multiple_of(3) }
         };
         (0..12).map(spoke).collect()

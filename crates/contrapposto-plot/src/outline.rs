@@ -198,7 +198,7 @@ mod tests {
             let outline = Outline::of(&case);
             let drawn = points(&outline.path());
             for k in 0..STEPS {
-                let (sin, cos) = (TAU * f64::from(k) / f64::from(STEPS)).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * f64::from(k) / f64::from(STEPS));
                 let wanted = case.iter().map(|c| c.support((cos, sin))).fold(f64::NEG_INFINITY, f64::max);
                 let found = drawn.iter().map(|p| p.0 * cos + p.1 * sin).fold(f64::NEG_INFINITY, f64::max);
                 // The sag between the 16 points of a curve.
@@ -219,7 +219,7 @@ mod tests {
             for _ in 0..200 {
                 let p = (20.0 * next() - 5.0, 20.0 * next() - 5.0);
                 let room = (0..STEPS).map(|k| {
-                    let (sin, cos) = (TAU * f64::from(k) / f64::from(STEPS)).sin_cos();
+                    let (sin, cos) = libm::sincos(TAU * f64::from(k) / f64::from(STEPS));
                     case.iter().map(|c| c.support((cos, sin))).fold(f64::NEG_INFINITY, f64::max) - p.0 * cos - p.1 * sin
                 });
                 let room = room.fold(f64::INFINITY, f64::min);

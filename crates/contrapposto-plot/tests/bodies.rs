@@ -291,7 +291,7 @@ fn arrows_of_forces_have_the_scale_of_the_legend() {
                 d.split_whitespace().take(2).map(|n| n.parse().unwrap()).collect()
             };
             let (foot, tip) = (point(pair[0]), point(pair[1]));
-            (tip[0] - foot[0]).hypot(tip[1] - foot[1])
+            libm::hypot(tip[0] - foot[0], tip[1] - foot[1])
         })
         .collect();
     // Front, right, three-quarter, legend; the third one is seen from above.

@@ -26,7 +26,7 @@ fn entry(frame: usize, joint: usize, text: &str) -> Entry {
 fn report() -> Report {
     let times: Vec<f64> = (0..50).map(|i| f64::from(i) * 0.2).collect();
     let swing = |t: &f64| 0.08 * t;
-    let place = |t: &f64| [0.0, 1.0, 0.0, (0.5 * swing(t)).cos(), 0.0, 0.0, (0.5 * swing(t)).sin()];
+    let place = |t: &f64| [0.0, 1.0, 0.0, libm::cos(0.5 * swing(t)), 0.0, 0.0, libm::sin(0.5 * swing(t))];
     let over = |f: &dyn Fn(&f64) -> f64| times.iter().map(f).collect::<Vec<f64>>();
     let group = |label: &str| Group {
         label: label.to_owned(),

@@ -22,7 +22,7 @@ const POINTS: &str = "(() => {
 
 /// A rod of two segments whose lower half has turned by 1 rad about its own axis, in the second frame.
 fn report() -> Report {
-    let (sin, cos) = 0.5_f64.sin_cos();
+    let (sin, cos) = libm::sincos(0.5);
     let (rest, turned) = ([0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.5, 0.0, cos, 0.0, sin, 0.0]);
     let segment = |places: [[f64; 7]; 2]| Segment {
         name: "rod".to_owned(),
@@ -63,8 +63,8 @@ fn bones_turn_by_their_shares_and_the_wooden_figure_is_a_choice() {
     for (vertex, angle) in [(0, 1.0_f64), (1, 0.5), (2, 0.0)] {
         let [x, z] = [0, 2].map(|k| points[6 * vertex + k].as_f64().unwrap());
         let z0 = if vertex == 2 { 0.1 } else { 0.0 };
-        let wanted = [0.2 * angle.cos() + z0 * angle.sin(), z0 * angle.cos() - 0.2 * angle.sin()];
-        assert!((x - wanted[0]).hypot(z - wanted[1]) < 1e-3, "vertex {vertex}: {x} {z}, not {wanted:?}");
+        let wanted = [0.2 * libm::cos(angle) + z0 * libm::sin(angle), z0 * libm::cos(angle) - 0.2 * libm::sin(angle)];
+        assert!(libm::hypot(x - wanted[0], z - wanted[1]) < 1e-3, "vertex {vertex}: {x} {z}, not {wanted:?}");
     }
     let skin = page.evaluate(PICTURE);
     page.evaluate("document.querySelector('[data-figure=wooden]').click()");

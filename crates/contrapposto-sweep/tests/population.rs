@@ -82,7 +82,7 @@ fn the_coefficients_of_a_linear_model_of_normal_numbers_are_those_of_its_closed_
     let answer = |i: usize| weights.iter().zip(&points).map(|(weight, list)| weight * quantile(list[i])).sum::<f64>();
     let answers: Vec<f64> = (0..4095).map(answer).collect();
     let regression = RankRegression::new(&answers, &points, 1).unwrap();
-    let expected = weights.map(|weight| 6.0 / PI * (weight / length / 2.0).asin());
+    let expected = weights.map(|weight| 6.0 / PI * libm::asin(weight / length / 2.0));
     for (coefficient, expected) in regression.coefficients.iter().zip(expected) {
         assert!((coefficient.value - expected).abs() < 0.005, "{coefficient:?}: {expected}");
         assert!(coefficient.interval[0] <= coefficient.value && coefficient.value <= coefficient.interval[1]);
@@ -92,7 +92,7 @@ fn the_coefficients_of_a_linear_model_of_normal_numbers_are_those_of_its_closed_
     let sum: f64 = expected.map(|coefficient| coefficient * coefficient).iter().sum();
     assert!((regression.explained - sum).abs() < 0.005, "{}: {sum}", regression.explained);
     // Ranks do not change with the scale of the answer.
-    let scaled: Vec<f64> = answers.iter().map(|answer| answer.exp()).collect();
+    let scaled: Vec<f64> = answers.iter().map(|answer| libm::exp(*answer)).collect();
     assert_eq!(RankRegression::new(&scaled, &points, 1).unwrap(), regression);
 }
 
@@ -118,7 +118,7 @@ fn of_the_ishigami_function_a_small_r_squared_says_that_the_coefficients_are_not
     // sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1: first-order indices 0.314, 0.442, 0, total ones 0.558, 0.442, 0.244 (closed form).
     let points = points(3, 4095);
     let x = |parameter: usize, i: usize| PI * (2.0 * points[parameter][i] - 1.0);
-    let answer = |i: usize| x(0, i).sin() * (1.0 + 0.1 * x(2, i).powi(4)) + 7.0 * x(1, i).sin().powi(2);
+    let answer = |i: usize| libm::sin(x(0, i)) * (1.0 + 0.1 * x(2, i).powi(4)) + 7.0 * libm::sin(x(1, i)).powi(2);
     let answers: Vec<f64> = (0..4095).map(answer).collect();
     let regression = RankRegression::new(&answers, &points, 1).unwrap();
     let shares: Vec<f64> = regression.coefficients.iter().map(|coefficient| coefficient.share()).collect();
@@ -176,7 +176,11 @@ fn bodies_are_women_and_men_in_turn_with_the_moments_of_their_tables() {
             let text = study.scenario(row);
             assert_eq!(text.contains("\"female\""), sex == 0, "{text}");
             statures.push(number(&text, "stature_m"));
-            scores.push((number(&text, "mass_kg").ln(), number(&text, "deviations"), number(&text, "spread").ln()));
+            scores.push((
+                libm::log(number(&text, "mass_kg")),
+                number(&text, "deviations"),
+                libm::log(number(&text, "spread")),
+            ));
         }
         let n = statures.len() as f64;
         let mean = |list: &[f64]| list.iter().sum::<f64>() / n;
@@ -186,8 +190,13 @@ fn bodies_are_women_and_men_in_turn_with_the_moments_of_their_tables() {
         let spread: Vec<f64> = scores.iter().map(|score| score.2).collect();
         let deviation = |list: &[f64]| product(list, list).sqrt();
         let correlation = |a: &[f64], b: &[f64]| product(a, b) / deviation(a) / deviation(b);
-        let found =
-            [mean(&statures), deviation(&statures), mean(&mass).exp(), deviation(&mass), correlation(&statures, &mass)];
+        let found = [
+            mean(&statures),
+            deviation(&statures),
+            libm::exp(mean(&mass)),
+            deviation(&mass),
+            correlation(&statures, &mass),
+        ];
         for (found, expected) in found.iter().zip(expected) {
             assert!((found / expected - 1.0).abs() < 0.01, "{found}, {expected}");
         }

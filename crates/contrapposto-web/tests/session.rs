@@ -397,7 +397,7 @@ fn bones_of_the_skin_are_at_the_joint_centres_in_every_posture() {
         ask(&mut studio, json!({ "do": "grab", "segment": hand["segment"], "point": hand["point"] }));
         for k in 0..10 {
             let turn = f64::from(k) * 0.7;
-            let target = [0.3 + 0.2 * turn.sin(), 1.1 + 0.4 * turn.cos(), 0.2];
+            let target = [0.3 + 0.2 * libm::sin(turn), 1.1 + 0.4 * libm::cos(turn), 0.2];
             let mut shown = Value::Null;
             (0..8).for_each(|_| shown = ask(&mut studio, json!({ "do": "drag", "target": target })));
             let q: Vec<f64> = shown["q"].as_array().unwrap().iter().map(number).collect();

@@ -198,7 +198,7 @@ fn a_motion_that_swings_the_trunk_twice_a_second_is_said_to_be_judged_at_rest() 
     let motion: Vec<_> = (0..=200)
         .map(|i| {
             let time = f64::from(i) / 100.0;
-            (time, bent(&model, &[("lumbar_extension", -20.0 - 15.0 * (4.0 * std::f64::consts::PI * time).cos())]))
+            (time, bent(&model, &[("lumbar_extension", -20.0 - 15.0 * libm::cos(4.0 * std::f64::consts::PI * time))]))
         })
         .collect();
     let hang = hang_at_pelvis(&model, Load::weight(&model, 0, 0.0));

@@ -164,12 +164,12 @@ fn two_links_exert_the_forces_of_formulas_by_hand() {
     let body = two_links();
     let mut capacity = body.capacity();
     let (q, r) = (0.4f64, 0.4f64 + 1.1);
-    let hand = [0.3 * q.cos() + 0.25 * r.cos(), 0.3 * q.sin() + 0.25 * r.sin()];
-    let elbow = [0.3 * q.cos(), 0.3 * q.sin()];
+    let hand = [0.3 * libm::cos(q) + 0.25 * libm::cos(r), 0.3 * libm::sin(q) + 0.25 * libm::sin(r)];
+    let elbow = [0.3 * libm::cos(q), 0.3 * libm::sin(q)];
     assert!((capacity.place() - V::new(hand[0], hand[1], 0.0)).norm() < 1e-14);
     for turn in 0..360 {
         let angle = f64::from(turn).to_radians();
-        let (x, y) = (angle.cos(), angle.sin());
+        let (x, y) = (libm::cos(angle), libm::sin(angle));
         // Muscles give the torque of the force that the hand exerts: the arm of the joint crossed with it.
         let torques = [hand[0] * y - hand[1] * x, (hand[0] - elbow[0]) * y - (hand[1] - elbow[1]) * x];
         let of_joint = |torque: f64, [up, down]: [f64; 2]| if torque > 0.0 { up / torque } else { -down / torque };
@@ -511,10 +511,10 @@ fn directions_are_642_unit_vectors_that_are_mirror_images_of_themselves_and_incl
     // The normal of the nearest plane is within this angle of a direction, whose force is at most 1 / cos of the least force.
     let gap = |[a, b, c]: &[usize; 3]| {
         let middle = (points[*b] - points[*a]).cross(&(points[*c] - points[*a])).normalize();
-        middle.dot(&points[*a]).acos()
+        libm::acos(middle.dot(&points[*a]))
     };
     let widest = faces.iter().map(gap).fold(0.0, f64::max);
-    assert!(widest < 5.6f64.to_radians() && 1.0 / widest.cos() < 1.005, "{}", widest.to_degrees());
+    assert!(widest < 5.6f64.to_radians() && 1.0 / libm::cos(widest) < 1.005, "{}", widest.to_degrees());
     // Volume of the body of the faces: outward everywhere, and that of a ball but for the corners cut off.
     let volume: f64 = faces.iter().map(|[a, b, c]| points[*a].dot(&points[*b].cross(&points[*c])) / 6.0).sum();
     assert!(faces.iter().all(|[a, b, c]| points[*a].dot(&points[*b].cross(&points[*c])) > 0.0));

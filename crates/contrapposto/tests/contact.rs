@@ -134,7 +134,7 @@ fn forces_hold_the_root_push_and_stay_inside_friction_and_patch() {
                     if friction.is_finite() {
                         let pyramid = friction / (FACES as f64 / 2.0).sqrt() * corner[0];
                         assert!(corner[1].abs() <= pyramid + 1e-9 && corner[2].abs() <= pyramid + 1e-9);
-                        assert!(corner[1].hypot(corner[2]) <= friction * corner[0] + 1e-9, "outside the cone");
+                        assert!(libm::hypot(corner[1], corner[2]) <= friction * corner[0] + 1e-9, "outside the cone");
                     }
                 }
                 inside_the_patch(&stand, support);
@@ -174,7 +174,7 @@ fn inside_the_patch(stand: &Stand, support: usize) {
     // r x (f y) = (-z f, 0, x f)
     assert!((moment.z / force - center.x).abs() < 1e-9 && (-moment.x / force - center.z).abs() < 1e-9);
     for k in 0..64 {
-        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 64.0).sin_cos();
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / 64.0);
         let along = V::new(cos, 0.0, sin);
         let most = stations.iter().map(|station| station.dot(&along)).fold(f64::NEG_INFINITY, f64::max);
         assert!(center.dot(&along) <= most + 1e-9);
@@ -365,7 +365,7 @@ fn a_body_that_leans_beyond_its_feet_is_short_by_that_much() {
         let n = (1.0 + edge * center) / (1.0 + edge * edge);
         assert!((force - (n - 1.0).abs() * weight).abs() < 1e-9 * weight, "{force} N");
         assert!((moment - (n * edge - center).abs() * weight).abs() < 1e-9 * weight, "{moment} N m");
-        let reach = force.hypot(moment) / weight * (1.0 + edge * edge).sqrt();
+        let reach = libm::hypot(force, moment) / weight * (1.0 + edge * edge).sqrt();
         assert!((reach - (center - edge)).abs() < 1e-9, "{reach} m beyond the edge");
         let Condition::Beyond(lean) = stand.condition() else { panic!("it leans") };
         assert!((lean - V::new(center - edge, 0.0, 0.0)).norm() < 1e-9, "{lean}");
@@ -387,17 +387,20 @@ fn a_body_that_leans_beyond_its_feet_is_short_by_that_much() {
 fn on_too_steep_a_slope_friction_is_short_by_the_sine() {
     let weight = 20.0 * G;
     for (slope, friction) in [(0.5f64, 0.6f64), (0.9, 0.3), (0.3, 0.0), (0.2, 0.6)] {
-        let normal = V::new(slope.sin(), slope.cos(), 0.0);
+        let normal = V::new(libm::sin(slope), libm::cos(slope), 0.0);
         let mut stand = block(V::new(0.0, 0.5, 0.0), vec![V::zeros()], normal, friction);
         let start = stand.model.default_posture();
         let balance = stand.update(&start);
-        let reach = (friction / 2f64.sqrt()).atan();
+        let reach = libm::atan(friction / 2f64.sqrt());
         if slope <= reach {
             assert_eq!(balance, Balance::Held);
             continue;
         }
         let Balance::Short { force, moment } = balance else { panic!("it would slip") };
-        assert!((force - weight * (slope - reach).sin()).abs() < 1e-9 * weight, "{force} N at {slope} and {friction}");
+        assert!(
+            (force - weight * libm::sin(slope - reach)).abs() < 1e-9 * weight,
+            "{force} N at {slope} and {friction}"
+        );
         assert!(moment < 1e-9 * weight);
         assert_eq!(stand.condition(), Condition::Friction);
     }
@@ -408,12 +411,13 @@ fn on_too_steep_a_slope_friction_is_short_by_the_sine() {
 #[test]
 fn a_body_that_slips_and_leans_is_told_how_far_it_leans_with_more_friction() {
     for (slope, friction, height) in [(0.5f64, 0.3, 0.6f64), (0.3, 0.0, 0.9), (0.7, 0.1, 0.3)] {
-        let (normal, down) = (V::new(slope.sin(), slope.cos(), 0.0), V::new(slope.cos(), -slope.sin(), 0.0));
+        let (normal, down) =
+            (V::new(libm::sin(slope), libm::cos(slope), 0.0), V::new(libm::cos(slope), -libm::sin(slope), 0.0));
         let mut stand = block(height * normal, vec![-0.1 * down, 0.1 * down], normal, friction);
         let start = stand.model.default_posture();
         assert!(matches!(stand.update(&start), Balance::Short { .. }));
         let Condition::FrictionBeyond(lean) = stand.condition() else { panic!("it slips and leans") };
-        let wanted = height * slope.tan() - 0.1;
+        let wanted = height * libm::tan(slope) - 0.1;
         assert!((lean - wanted * down).norm() < 1e-9, "{lean} for {wanted} m");
         let words = stand.contact.missing(&stand.model, stand.body.kinematics()).unwrap().to_string();
         assert!(
@@ -458,7 +462,7 @@ fn weight_and_loads_act_as_far_beyond_the_supports_as_their_line_says() {
         let acts = center + line * (origin - center).dot(&normal) / line.dot(&normal);
         let flat = |point: &V| plane.map(|axis| (point - origin).dot(&axis));
         let lean = beyond(flat(&acts), &corners.iter().map(flat).collect::<Vec<_>>());
-        if lean[0].hypot(lean[1]) < 1e-6 {
+        if libm::hypot(lean[0], lean[1]) < 1e-6 {
             assert_eq!(balance, Balance::Held);
             continue;
         }
@@ -483,7 +487,7 @@ fn beyond(point: [f64; 2], corners: &[[f64; 2]]) -> [f64; 2] {
             let share = ((point[0] - a[0]) * along[0] + (point[1] - a[1]) * along[1]) / square.max(1e-300);
             let share = share.clamp(0.0, 1.0);
             let off = [0, 1].map(|i| point[i] - a[i] - share * along[i]);
-            if off[0].hypot(off[1]) < least[0].hypot(least[1]) {
+            if libm::hypot(off[0], off[1]) < libm::hypot(least[0], least[1]) {
                 least = off;
             }
             for c in corners {

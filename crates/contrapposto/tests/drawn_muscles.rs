@@ -38,7 +38,7 @@ fn distance(shape: &WrapShape, place: &V) -> f64 {
             let scaled = place.component_div(half_axes);
             (scaled.norm_squared() - 1.0) / (2.0 * scaled.component_div(half_axes).norm())
         }
-        WrapShape::Torus { tube, circle } => (place.xy().norm() - circle).hypot(place.z) - tube,
+        WrapShape::Torus { tube, circle } => libm::hypot(place.xy().norm() - circle, place.z) - tube,
     }
 }
 

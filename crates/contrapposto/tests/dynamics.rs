@@ -184,7 +184,7 @@ fn inertia_of_a_planar_double_pendulum_is_the_textbooks() {
     let model = builder.build();
     let (q, v, a) = ([0.4, 0.9], [1.5, -2.5], [3.0, 4.0]);
     let moving = Moving { posture: Posture::new(q.to_vec()), speeds: v.to_vec(), accelerations: a.to_vec() };
-    let (sin, cos) = q[1].sin_cos();
+    let (sin, cos) = libm::sincos(q[1]);
     let both = l * c[1] * m[1];
     let m11 = i[0] + m[0] * c[0] * c[0] + i[1] + m[1] * (l * l + c[1] * c[1]) + 2.0 * both * cos;
     let m12 = i[1] + m[1] * c[1] * c[1] + both * cos;
@@ -278,12 +278,12 @@ fn free_body() -> Model {
 fn rates_of_a_turning_free_body_are_central_differences_of_its_postures() {
     let model = free_body();
     let at = |t: f64| {
-        let turn = UnitQuaternion::from_axis_angle(&V::z_axis(), 1.3 * t + 0.4 * (3.0 * t).sin())
-            * UnitQuaternion::from_axis_angle(&V::x_axis(), 0.8 * (2.0 * t).cos());
+        let turn = UnitQuaternion::from_axis_angle(&V::z_axis(), 1.3 * t + 0.4 * libm::sin(3.0 * t))
+            * UnitQuaternion::from_axis_angle(&V::x_axis(), 0.8 * libm::cos(2.0 * t));
         let mut posture = model.default_posture();
         for (i, coordinate) in model.coordinates().iter().enumerate() {
             posture.values_mut()[i] = match coordinate.name.as_str() {
-                "x" => t.sin(),
+                "x" => libm::sin(t),
                 "y" => 0.5 * t * t,
                 "z" => 0.3,
                 name if name.ends_with("qw") => turn.w,
@@ -351,7 +351,7 @@ fn derivatives_of_a_motion_through_filtfilt_are_scipys() {
     let motion: Vec<(f64, Posture)> = (0..25)
         .map(|i| {
             let mut posture = model.default_posture();
-            posture.values_mut()[0] = (0.5 * f64::from(i)).sin() + f64::from(i % 3) / 5.0;
+            posture.values_mut()[0] = libm::sin(0.5 * f64::from(i)) + f64::from(i % 3) / 5.0;
             (f64::from(i) / 100.0, posture)
         })
         .collect();

@@ -140,7 +140,7 @@ fn every_patch_of_a_free_foot_is_flat_on_the_floor_within_its_region_and_turn() 
             "effort {:.4}: middle at {:.3}, {:.3} m, turned by {:.3} rad",
             found.relaxed.effort, middle.x, middle.z, turn.y
         );
-        assert!((TURN.0 - 1e-6..=TURN.1 + 1e-6).contains(&turn.y) && turn.x.hypot(turn.z) < 1e-6, "{turn}");
+        assert!((TURN.0 - 1e-6..=TURN.1 + 1e-6).contains(&turn.y) && libm::hypot(turn.x, turn.z) < 1e-6, "{turn}");
     }
 }
 

@@ -73,7 +73,7 @@ fn the_band_resists_adduction_alone_and_is_the_gradient_of_an_energy() {
             let slope = -(energy[0] - energy[1]) / 2e-6;
             assert!((torque[rate] - slope).abs() < 1e-6 * (1.0 + slope.abs()), "{} {slope}", torque[rate]);
             if angles[0] == 0.0 {
-                let expected = if place == 1 { -tract.torque() * (8.0 * (0.3 - tract.angle)).exp() } else { 0.0 };
+                let expected = if place == 1 { -tract.torque() * libm::exp(8.0 * (0.3 - tract.angle)) } else { 0.0 };
                 assert!((torque[rate] - expected).abs() < 1e-9, "{} {expected}", torque[rate]);
             }
         }

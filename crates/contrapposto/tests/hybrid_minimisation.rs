@@ -25,7 +25,7 @@ fn random_problem<'a>(curve: &'a PassiveCurve, random: &mut Pcg64Mcg) -> Problem
         1 => 0.0,
         2 | 3 => -curve.slope(somewhere(random)) * random.random_range(0.9..1.1),
         4 => -curve.slope(somewhere(random)),
-        _ => -curve.slope(curve.flattest_angle()) + 10f64.powf(random.random_range(-3.0..2.0)),
+        _ => -curve.slope(curve.flattest_angle()) + libm::pow(10.0, random.random_range(-3.0..2.0)),
     };
     let slopes = curve.slope_angles(-external_slope);
     let angle = match random.random_range(0..12) {
@@ -246,7 +246,7 @@ fn sinh(range: (f64, f64)) -> PassiveCurve {
 const STEEP: f64 = 3.086_161_269_630_488; // 2 cosh 1
 
 fn g(q: f64) -> f64 {
-    2.0 * q.sinh() - STEEP * q
+    2.0 * libm::sinh(q) - STEEP * q
 }
 
 /// Plain halving, independent of the library's search.
@@ -320,7 +320,7 @@ fn hand_made_states_meet_all_ten_cases() {
 }
 
 fn asinh(x: f64) -> f64 {
-    (x + (x * x + 1.0).sqrt()).ln()
+    libm::log(x + (x * x + 1.0).sqrt())
 }
 
 #[test]
@@ -425,8 +425,8 @@ fn an_accepted_strategy_is_kept() {
             let problem = Problem {
                 curve: &curve,
                 angle,
-                external_torque: -m_g_l * direction.sin(),
-                external_slope: -m_g_l * direction.cos(),
+                external_torque: -m_g_l * libm::sin(direction),
+                external_slope: -m_g_l * libm::cos(direction),
                 strategy: Strategy::Active,
                 minimum_decrease_ratio: 0.2,
                 torque_tolerance: 0.05,

@@ -67,7 +67,8 @@ fn a_solve_out_of_reach_ends_no_farther_than_its_first_start() {
     let mut random = Pcg64Mcg::new(SEED);
     for _ in 0..TARGETS_DRAWN {
         let (distance, angle) = (random.random_range(1.5..2.5), random.random_range(-0.6..0.6_f64));
-        let target = Vector3::new(distance * angle.cos(), random.random_range(0.4..2.6), distance * angle.sin());
+        let target =
+            Vector3::new(distance * libm::cos(angle), random.random_range(0.4..2.6), distance * libm::sin(angle));
         let mut engine = Engine::new(&model, levels(&model, target), &[], Options::inverse_kinematics()).unwrap();
         let mut posture = start.clone();
         for _ in 0..Options::inverse_kinematics().max_steps {

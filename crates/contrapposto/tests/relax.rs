@@ -323,7 +323,7 @@ fn a_body_that_cannot_stand_says_what_is_missing() {
     let Missing { force, moment, condition } = missing;
     assert_eq!(condition, Condition::Friction);
     // A normal force of w cos 45 leaves w sin 45 along the slope; the solver trades a little of it for moment.
-    assert!(force.hypot(moment) > 0.5 * weight && force < weight);
+    assert!(libm::hypot(force, moment) > 0.5 * weight && force < weight);
 }
 
 #[test]
@@ -454,7 +454,7 @@ fn a_limb_that_hangs_in_the_start_hangs_in_every_answer_and_one_that_is_upright_
         };
         let found = equilibria(&search, OPTIONS).unwrap();
         // 1 upright, -1 hanging.
-        let places = found.postures.iter().map(|posture| up * posture.relaxed.posture.values()[0].cos());
+        let places = found.postures.iter().map(|posture| up * libm::cos(posture.relaxed.posture.values()[0]));
         let places: Vec<f64> = places.collect();
         println!("starts at {up}: {places:?}");
         assert!(places.iter().all(|place| place.abs() > 0.999), "{places:?}");

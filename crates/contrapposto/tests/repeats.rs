@@ -186,7 +186,7 @@ fn curls() -> (Model, Vec<(f64, Posture)>, Load) {
     let motion = (0..=40).map(|i| {
         let mut posture = model.default_posture();
         let turn = 2.0 * std::f64::consts::PI * f64::from(i) / 40.0;
-        posture.values_mut()[elbow] = (60.0 + 30.0 * turn.cos()).to_radians();
+        posture.values_mut()[elbow] = (60.0 + 30.0 * libm::cos(turn)).to_radians();
         (3.0 + 0.05 * f64::from(i), posture)
     });
     let motion = motion.collect();

@@ -92,7 +92,7 @@ fn cubes_share_a_torque_by_the_roots_of_the_muscles_own_torques() {
     // 3 a^2 = y t of both flexors, and sum a t is the torque.
     for torque in [0.05, 1.0, 10.0] {
         let (found, _) = solve(torque, 0.0, [(0.0, 1.0); 3]);
-        let scale = torque / (own[0].powf(1.5) + own[1].powf(1.5));
+        let scale = torque / (libm::pow(own[0], 1.5) + libm::pow(own[1], 1.5));
         for m in 0..2 {
             assert!((found[m] - scale * own[m].sqrt()).abs() < 1e-8, "{torque}: {found:?} {scale} {own:?}");
         }
@@ -102,7 +102,7 @@ fn cubes_share_a_torque_by_the_roots_of_the_muscles_own_torques() {
     let (found, _) = solve(10.0, 0.0, [(0.0, 1.0), (0.0, 0.2), (0.0, 1.0)]);
     assert!((found[1] - 0.2).abs() < 1e-15 && (found[0] - (10.0 - 0.2 * own[1]) / own[0]).abs() < 1e-9, "{found:?}");
     let (_, reserves) = solve(10.0, 7.0, [(0.0, 1.0); 3]);
-    let scale = 10.0 / (own[0].powf(1.5) + own[1].powf(1.5) + 7f64.powf(1.5));
+    let scale = 10.0 / (libm::pow(own[0], 1.5) + libm::pow(own[1], 1.5) + libm::pow(7.0, 1.5));
     assert!((reserves[0] - scale * 7f64.sqrt()).abs() < 1e-8, "{reserves:?}");
 }
 

@@ -460,8 +460,8 @@ fn eq_8_by_hand() {
         let posture = Posture::new(vec![q_1, q_2]);
         let gradient = Statics::at(&pendulum.model, &posture, &[]).gradient;
         let frames = frames(&pendulum, posture.values());
-        let right = m2 * g * l2 / 2.0 * (q_1 + q_2).sin();
-        let too_much = (m1 / 2.0 + m2) * g * l1 * q_1.sin();
+        let right = m2 * g * l2 / 2.0 * libm::sin(q_1 + q_2);
+        let too_much = (m1 / 2.0 + m2) * g * l1 * libm::sin(q_1);
         for (given, expected) in [
             (gradient.get(0, 1), right),
             (gradient.get(1, 0), right),
@@ -665,11 +665,12 @@ fn planar_double_pendulum() {
         // V = m1 g l1/2 sin a + m2 g (l1 sin a + l2/2 sin(a+b)) + held g (l1 sin a + l2 sin(a+b)) - F l1 cos a
         let inner = g * l1 * (m1 / 2.0 + m2 + held);
         let outer = g * l2 * (m2 / 2.0 + held);
-        let tau_2 = -outer * (a + b).cos() + force * l2;
-        let tau_1 = -inner * a.cos() - outer * (a + b).cos() - force * l1 * a.sin() + force * (l2 + l1 * b.cos());
-        let d11 = inner * a.sin() + outer * (a + b).sin() - force * l1 * a.cos();
-        let d12 = outer * (a + b).sin() - force * l1 * b.sin();
-        let d2 = outer * (a + b).sin();
+        let tau_2 = -outer * libm::cos(a + b) + force * l2;
+        let tau_1 = -inner * libm::cos(a) - outer * libm::cos(a + b) - force * l1 * libm::sin(a)
+            + force * (l2 + l1 * libm::cos(b));
+        let d11 = inner * libm::sin(a) + outer * libm::sin(a + b) - force * l1 * libm::cos(a);
+        let d12 = outer * libm::sin(a + b) - force * l1 * libm::sin(b);
+        let d2 = outer * libm::sin(a + b);
         let expected = [tau_1, tau_2, d11, d12, d2, d2];
         let gradient = &statics.gradient;
         let given = [
@@ -702,9 +703,9 @@ fn adult_elbow_with_the_upper_arm_horizontal() {
         if degrees == 0 {
             peak = torque;
         }
-        assert!((torque - peak * theta.cos()).abs() < 1e-12, "{degrees} deg: {torque}");
+        assert!((torque - peak * libm::cos(theta)).abs() < 1e-12, "{degrees} deg: {torque}");
         let slope = statics.external.own_slope(&statics.kinematics, &model, rate);
-        assert!((slope + peak * theta.sin()).abs() < 1e-12, "{degrees} deg: slope {slope}");
+        assert!((slope + peak * libm::sin(theta)).abs() < 1e-12, "{degrees} deg: slope {slope}");
     }
     println!("elbow torque, forearm level: {peak:.4} N m");
     assert!((peak + 2.90).abs() < 0.005);
@@ -714,7 +715,7 @@ fn adult_elbow_with_the_upper_arm_horizontal() {
 #[test]
 fn slide_that_carries_a_weight() {
     // A slide 30 deg above the horizontal carries 2 kg and 3 kg more: -(2 + 3) g sin 30, wherever it stands.
-    let axis = Unit::new_normalize(V::new(30f64.to_radians().cos(), 30f64.to_radians().sin(), 0.0));
+    let axis = Unit::new_normalize(V::new(libm::cos(30f64.to_radians()), libm::sin(30f64.to_radians()), 0.0));
     let model = one_body(JointKind::Slide(axis), V::new(0.0, -9.81, 0.0));
     for position in [-2.0, 0.0, 0.3] {
         let load = Load { segment: 0, point: V::new(0.1, 0.2, 0.3), kind: LoadKind::Weight(3.0) };

@@ -277,7 +277,7 @@ fn angles_of_one_coordinate_alone_are_the_coordinate() {
                 }
                 // Half a turn of swing lies outside all ranges.
                 let swing = |k: usize| angles[k] - joint.swing_twist.reference()[k];
-                assert!(swing(0).hypot(swing(1)) < 175f64.to_radians(), "{}: {angles:?}", joint.name);
+                assert!(libm::hypot(swing(0), swing(1)) < 175f64.to_radians(), "{}: {angles:?}", joint.name);
             }
         }
     }

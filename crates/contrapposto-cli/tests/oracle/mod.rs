@@ -91,8 +91,8 @@ pub struct Answer {
 impl Curve {
     /// The two exponential terms `(a_l exp(..), a_u exp(..))`, kept finite.
     fn exponentials(&self, q: f64) -> (f64, f64) {
-        let lower = (-self.b_l * (q - self.q_l)).min(MAX_EXPONENT).exp();
-        let upper = (self.b_u * (q - self.q_u)).min(MAX_EXPONENT).exp();
+        let lower = libm::exp((-self.b_l * (q - self.q_l)).min(MAX_EXPONENT));
+        let upper = libm::exp((self.b_u * (q - self.q_u)).min(MAX_EXPONENT));
         (self.a_l * lower, self.a_u * upper)
     }
 
@@ -111,8 +111,8 @@ impl Curve {
     /// Has the sign of the second derivative of the torque; falls with `q` and is zero at the flattest angle.
     /// The two terms are compared by their logarithms, so that neither overflows nor vanishes.
     fn bend(&self, q: f64) -> f64 {
-        let lower = self.a_l.ln() + 2.0 * self.b_l.ln() - self.b_l * (q - self.q_l);
-        let upper = self.a_u.ln() + 2.0 * self.b_u.ln() + self.b_u * (q - self.q_u);
+        let lower = libm::log(self.a_l) + 2.0 * libm::log(self.b_l) - self.b_l * (q - self.q_l);
+        let upper = libm::log(self.a_u) + 2.0 * libm::log(self.b_u) + self.b_u * (q - self.q_u);
         lower - upper
     }
 

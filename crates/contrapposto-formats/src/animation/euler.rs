@@ -39,7 +39,7 @@ mod tests {
         let (mut worst, mut before) = (0.0_f64, [0.0; 3]);
         for i in 0..4000 {
             let t = f64::from(i) * 0.005;
-            let wanted = [1.3 * t, 0.4 * (0.7 * t).sin(), -0.9 * t];
+            let wanted = [1.3 * t, 0.4 * libm::sin(0.7 * t), -0.9 * t];
             let found = zyx(&rotation(wanted), before);
             worst = worst.max([0, 1, 2].map(|k| (found[k] - wanted[k]).abs()).into_iter().fold(0.0, f64::max));
             before = found;

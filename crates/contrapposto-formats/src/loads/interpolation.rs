@@ -48,7 +48,7 @@ mod tests {
     #[test]
     fn values_between_rows_are_those_of_lines_and_of_natural_splines() {
         let times = vec![0.0, 0.1, 0.25, 0.3, 0.5, 0.6];
-        let values: Vec<f64> = times.iter().map(|time: &f64| 700.0 * (9.0 * time).sin() + 40.0).collect();
+        let values: Vec<f64> = times.iter().map(|time: &f64| 700.0 * libm::sin(9.0 * time) + 40.0).collect();
         let rows = values.iter().map(|value| vec![-1.0, *value]).collect();
         let columns = vec!["other".to_owned(), "force".to_owned()];
         let table =

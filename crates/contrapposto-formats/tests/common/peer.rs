@@ -182,7 +182,7 @@ impl Peer {
             return Vector3::new(within(-0.4, 0.4), within(-0.5, 0.0), within(2.4, 3.2));
         }
         let (distance, angle) = (within(1.8, 2.8), within(-0.6, 0.6));
-        Vector3::new(distance * angle.cos(), distance * angle.sin(), within(0.5, 1.6))
+        Vector3::new(distance * libm::cos(angle), distance * libm::sin(angle), within(0.5, 1.6))
     }
 }
 

@@ -73,7 +73,7 @@ fn outside_the_patch(model: &Model, posture: &[f64], support: &Support, contact:
         support.normal.cross(&if support.normal.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() }).normalize();
     let across = support.normal.cross(&along);
     let farthest = |angle: f64| {
-        let direction = angle.cos() * along + angle.sin() * across;
+        let direction = libm::cos(angle) * along + libm::sin(angle) * across;
         corners.iter().map(|corner| corner.dot(&direction)).fold(f64::NEG_INFINITY, f64::max)
     };
     (0..16).map(|i| -farthest(f64::from(i) * std::f64::consts::TAU / 16.0)).fold(0.0, f64::max)

@@ -66,7 +66,7 @@ fn mutated(texts: &[String], state: &mut u64) -> Vec<u8> {
                     } else {
                         let text = String::from_utf8_lossy(&bytes[from..to]);
                         let value: f64 = text.parse().unwrap_or(1.0);
-                        format!("{:?}", value * 10f64.powf(next(state) as f64 / f64::from(1 << 30) * 3.0 - 3.0))
+                        format!("{:?}", value * libm::pow(10.0, next(state) as f64 / f64::from(1 << 30) * 3.0 - 3.0))
                     };
                     bytes.splice(from..to, odd.into_bytes());
                 }

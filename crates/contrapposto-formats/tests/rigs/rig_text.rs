@@ -79,7 +79,7 @@ impl RigText {
         add("Head", Some(neck), [0.0, 0.1, 0.02], Some([0.0, 0.18, 0.0]));
         for (word, letter, side) in [("Left", "L", 1.0), ("Right", "R", -1.0)] {
             // Along the forearm, and ahead of it.
-            let (sin, cos) = self.bent.to_radians().sin_cos();
+            let (sin, cos) = libm::sincos(self.bent.to_radians());
             let fore = |[along, ahead]: [f64; 2]| [side * (along * cos - ahead * sin), 0.0, along * sin + ahead * cos];
             let collar = add(&format!("{word}Shoulder"), Some(chest), [0.05 * side, 0.1, 0.0], None);
             let arm = add(&format!("{word}Arm"), Some(collar), [0.13 * side, 0.0, 0.0], None);
@@ -92,7 +92,7 @@ impl RigText {
                 parent = add(&format!("{letter}HipJoint"), Some(hips), [0.0; 3], None);
             }
             // The bones lean outwards, and the foot with them.
-            let (sin, cos) = self.splayed.to_radians().sin_cos();
+            let (sin, cos) = libm::sincos(self.splayed.to_radians());
             let lean = |[out, up, ahead]: [f64; 3]| [side * (out * cos - up * sin), out * sin + up * cos, ahead];
             let thigh_joint = add(&format!("{word}UpLeg"), Some(parent), [0.09 * side, -0.06, 0.0], None);
             let knee = add(&format!("{word}Leg"), Some(thigh_joint), lean([0.0, -thigh, 0.0]), None);
@@ -162,9 +162,9 @@ impl RigText {
     fn angles(&self, rotation: &Rotation3<f64>) -> [f64; 3] {
         let r = rotation.matrix();
         if self.names.order == "ZYX" {
-            [r[(1, 0)].atan2(r[(0, 0)]), (-r[(2, 0)]).asin(), r[(2, 1)].atan2(r[(2, 2)])]
+            [libm::atan2(r[(1, 0)], r[(0, 0)]), libm::asin(-r[(2, 0)]), libm::atan2(r[(2, 1)], r[(2, 2)])]
         } else {
-            [(-r[(0, 1)]).atan2(r[(1, 1)]), r[(2, 1)].asin(), (-r[(2, 0)]).atan2(r[(2, 2)])]
+            [libm::atan2(-r[(0, 1)], r[(1, 1)]), libm::asin(r[(2, 1)]), libm::atan2(-r[(2, 0)], r[(2, 2)])]
         }
     }
 }

@@ -62,9 +62,9 @@ fn swinging(model: &Model) -> (Vec<f64>, Vec<Vec<f64>>) {
         let mut values = vec![];
         while let Some(c) = model.coordinates().get(values.len()) {
             let n = values.len() as f64;
-            let swing = (1.3 * t + n).sin();
+            let swing = libm::sin(1.3 * t + n);
             if c.kind == CoordinateKind::Quaternion {
-                let spin = Vector3::new(2.0 * t + n, (1.1 * t).sin(), (0.8 * t).cos());
+                let spin = Vector3::new(2.0 * t + n, libm::sin(1.1 * t), libm::cos(0.8 * t));
                 let q = UnitQuaternion::from_scaled_axis(spin);
                 values.extend([q.w, q.i, q.j, q.k]);
             } else {

@@ -70,9 +70,9 @@ impl Glb {
         let along: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
         assert!(width == 3 || steps || along >= 0.0, "the sign of a quaternion jumps");
         let mut weights = [1.0 - part, part];
-        let angle = along.clamp(-1.0, 1.0).acos();
+        let angle = libm::acos(along.clamp(-1.0, 1.0));
         if width == 4 && angle > 1e-6 {
-            weights = weights.map(|w| (w * angle).sin() / angle.sin());
+            weights = weights.map(|w| libm::sin(w * angle) / libm::sin(angle));
         }
         a.iter().zip(b).map(|(a, b)| weights[0] * a + weights[1] * b).collect()
     }

@@ -205,7 +205,7 @@ mod tests {
         let leg = |shift: f64| {
             let angle = |time: &f64| {
                 let at = TAU * (phase(*time) + shift);
-                0.5 * at.sin() + 0.3 * (2.0 * at).cos()
+                0.5 * libm::sin(at) + 0.3 * libm::cos(2.0 * at)
             };
             times.iter().map(angle).collect()
         };
@@ -246,13 +246,14 @@ mod tests {
         let of = |angle: &dyn Fn(f64) -> f64| vec![times.iter().map(|time| angle(*time)).collect::<Vec<f64>>()];
         let not_back = |found: NoCycles| matches!(found, NoCycles::NotBack(_));
         for (what, angle) in [
-            ("one lift, with rest before and after", of(&|t| (-(t - 2.0) * (t - 2.0) / 0.1).exp())),
+            ("one lift, with rest before and after", of(&|t| libm::exp(-(t - 2.0) * (t - 2.0) / 0.1))),
             ("a slow rise", of(&|t| 0.5 * t)),
-            ("growing frequency", of(&|t| (3.0 * t * t).sin())),
+            ("growing frequency", of(&|t| libm::sin(3.0 * t * t))),
         ] {
             assert!(cycle_bounds(&times, &angle).is_err_and(not_back), "{what}");
         }
-        for (what, angle) in [("nothing moves", of(&|_| 0.3)), ("less than a degree", of(&|t| 0.01 * (6.0 * t).sin()))]
+        for (what, angle) in
+            [("nothing moves", of(&|_| 0.3)), ("less than a degree", of(&|t| 0.01 * libm::sin(6.0 * t)))]
         {
             assert_eq!(cycle_bounds(&times, &angle), Err(NoCycles::Still), "{what}");
         }

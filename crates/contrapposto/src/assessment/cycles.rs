@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn landings_that_plates_miss_do_not_double_a_cycle() {
         let times = times(6.0);
-        let angle: Vec<f64> = times.iter().map(|time| (TAU * time / 1.2).sin()).collect();
+        let angle: Vec<f64> = times.iter().map(|time| libm::sin(TAU * time / 1.2)).collect();
         let seen = steps(&times, &[0.3, 0.9, 2.7])
             .iter()
             .zip(&times)
@@ -269,13 +269,13 @@ mod tests {
         let times: Vec<f64> = (0..=33_000).map(|i| f64::from(i) * 1e-4).collect();
         let value = |time: f64| {
             let k = bounds[1..3].iter().filter(|bound| time >= **bound).count();
-            factors[k] * (TAU * (time - bounds[k]) / (bounds[k + 1] - bounds[k])).sin()
+            factors[k] * libm::sin(TAU * (time - bounds[k]) / (bounds[k + 1] - bounds[k]))
         };
         let values: Vec<f64> = times.iter().map(|time| value(*time)).collect();
         let cycles = Cycles { bounds: bounds.to_vec(), origin: CycleOrigin::Given };
         let curve = CycleGrid::new(&cycles, &times).curve(&values);
         for percent in 0..PERCENTS {
-            let sine = (TAU * percent as f64 / 100.0).sin();
+            let sine = libm::sin(TAU * percent as f64 / 100.0);
             assert!((curve.mean[percent] - 3.0 * sine).abs() < 1e-5, "{percent}");
             assert!((curve.deviation[percent] - 7f64.sqrt() * sine.abs()).abs() < 1e-5, "{percent}");
         }

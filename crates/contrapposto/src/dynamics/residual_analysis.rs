@@ -116,7 +116,7 @@ mod tests {
                     let time = f64::from(i) / 100.0;
                     let mut posture = model.default_posture();
                     let swing: f64 = (1..=4)
-                        .map(|k| 0.6 / f64::from(k).powi(3) * (std::f64::consts::TAU * f64::from(k) * time).sin())
+                        .map(|k| 0.6 / f64::from(k).powi(3) * libm::sin(std::f64::consts::TAU * f64::from(k) * time))
                         .sum();
                     posture.values_mut()[elbow] = 1.0 + swing + noise * rng.random_range(-1.0..1.0);
                     (time, posture)

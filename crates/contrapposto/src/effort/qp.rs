@@ -392,7 +392,7 @@ mod tests {
         program.matrix = vec![0.0; n * n];
         for (k, row) in numbers(2 * n * n).chunks_exact(n).enumerate() {
             // Eigenvalues over three decades, as of effort.
-            let weight = 10f64.powf(-3.0 * k as f64 / (2 * n) as f64);
+            let weight = libm::pow(10.0, -3.0 * k as f64 / (2 * n) as f64);
             for i in 0..n {
                 add_scaled(&mut program.matrix[i * n + i..(i + 1) * n], weight * row[i], &row[i..]);
             }

@@ -88,7 +88,7 @@ fn with_hip(model: Model, side: &str, random: &mut Random) -> Model {
     }
     let mut term = |end: End, sign: f64| CoupledTerm {
         sign,
-        c0: end.torque.ln() + sign * end.rate * end.angle,
+        c0: libm::log(end.torque) + sign * end.rate * end.angle,
         rates: [-sign * end.rate, random.random_range(-1.0..2.0), 0.0],
     };
     let terms = vec![term(lower, 1.0), term(upper, -1.0)];

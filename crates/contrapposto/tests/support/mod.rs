@@ -78,8 +78,8 @@ pub fn curve(kind: Kind, random: &mut Pcg64Mcg) -> (PassiveCurve, Vec<f64>) {
 /// Ends strong and weak, sometimes missing, with the flattest angle sometimes outside the range.
 fn double_exponential(range: (f64, f64), random: &mut Pcg64Mcg) -> Form {
     let mut end = |at: f64| End {
-        torque: if chance(random, 0.08) { 0.0 } else { 10f64.powf(random.random_range(-2.0..1.8)) },
-        rate: 10f64.powf(random.random_range(-0.3..1.5)),
+        torque: if chance(random, 0.08) { 0.0 } else { libm::pow(10.0, random.random_range(-2.0..1.8)) },
+        rate: libm::pow(10.0, random.random_range(-0.3..1.5)),
         angle: at + random.random_range(-0.1..0.1),
     };
     let (lower, upper) = (end(range.0), end(range.1));
@@ -132,9 +132,9 @@ fn coordinate_limit_force(range: (f64, f64), random: &mut Pcg64Mcg) -> (Form, Ve
     if chance(random, 0.05) {
         limits[1] = limits[0];
     }
-    let mut stiffness = || if chance(random, 0.05) { 0.0 } else { 10f64.powf(random.random_range(-1.0..3.0)) };
+    let mut stiffness = || if chance(random, 0.05) { 0.0 } else { libm::pow(10.0, random.random_range(-1.0..3.0)) };
     let (upper_stiffness, lower_stiffness) = (stiffness(), stiffness());
-    let transition = 10f64.powf(random.random_range(-1.0..1.0));
+    let transition = libm::pow(10.0, random.random_range(-1.0..1.0));
     let force = CoordinateLimitForce {
         upper_stiffness,
         upper_limit: limits[1],

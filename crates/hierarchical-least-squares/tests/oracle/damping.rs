@@ -267,11 +267,11 @@ fn damped_steps_towards_a_point_out_of_reach_stay_short() {
                 sum += angle;
                 *a = sum;
             }
-            let end = a.iter().fold((0.0, 0.0), |(x, y), a| (x + a.cos(), y + a.sin()));
+            let end = a.iter().fold((0.0, 0.0), |(x, y), &a| (x + libm::cos(a), y + libm::sin(a)));
             let mut reach = empty_level();
-            let missing = (4.0 * 0.8_f64.cos() - end.0, 4.0 * 0.8_f64.sin() - end.1);
-            let x: Vec<f64> = (0..3).map(|i| -a[i..].iter().map(|a| a.sin()).sum::<f64>()).collect();
-            let y: Vec<f64> = (0..3).map(|i| a[i..].iter().map(|a| a.cos()).sum::<f64>()).collect();
+            let missing = (4.0 * libm::cos(0.8_) - end.0, 4.0 * libm::sin(0.8_) - end.1);
+            let x: Vec<f64> = (0..3).map(|i| -a[i..].iter().map(|&a| libm::sin(a)).sum::<f64>()).collect();
+            let y: Vec<f64> = (0..3).map(|i| a[i..].iter().map(|&a| libm::cos(a)).sum::<f64>()).collect();
             reach.push(&x, missing.0, missing.0);
             reach.push(&y, missing.1, missing.1);
             reach.damping = damping;
@@ -287,7 +287,7 @@ fn damped_steps_towards_a_point_out_of_reach_stay_short() {
                 *angle += step;
             }
             assert!((angles.iter().sum::<f64>() - direction).abs() < 1e-9);
-            distance = missing.0.hypot(missing.1);
+            distance = libm::hypot(missing.0, missing.1);
         }
         (longest, distance)
     };
@@ -300,6 +300,6 @@ fn damped_steps_towards_a_point_out_of_reach_stay_short() {
 
 /// The least distance of two links from the point at 4 in direction 0.8, from the third link fixed in `direction`.
 fn nearest(direction: f64) -> f64 {
-    let (x, y) = (4.0 * 0.8_f64.cos() - direction.cos(), 4.0 * 0.8_f64.sin() - direction.sin());
-    x.hypot(y) - 2.0
+    let (x, y) = (4.0 * libm::cos(0.8_) - libm::cos(direction), 4.0 * libm::sin(0.8_) - libm::sin(direction));
+    libm::hypot(x, y) - 2.0
 }

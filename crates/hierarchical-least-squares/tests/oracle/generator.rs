@@ -300,12 +300,12 @@ fn integer(rng: &mut Pcg64, most: i32) -> f64 {
 }
 
 pub fn normal(rng: &mut Pcg64) -> f64 {
-    let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
-    radius * (std::f64::consts::TAU * rng.random::<f64>()).cos()
+    let radius = (-2.0 * libm::log(1.0 - rng.random::<f64>())).sqrt();
+    radius * libm::cos(std::f64::consts::TAU * rng.random::<f64>())
 }
 
 pub fn log_uniform(rng: &mut Pcg64, from: f64, to: f64) -> f64 {
-    rng.random_range(from.ln()..to.ln()).exp()
+    libm::exp(rng.random_range(libm::log(from)..libm::log(to)))
 }
 
 /// Whole numbers of `from..=to`, the small ones more often.

@@ -25,8 +25,8 @@ pub fn svd(a: &DMatrix<f64>) -> Svd {
                 }
                 turned = true;
                 let zeta = (jj - ii) / (2.0 * ij);
-                let t = if zeta < 0.0 { -1.0 } else { 1.0 } / (zeta.abs() + zeta.hypot(1.0));
-                let c = 1.0 / t.hypot(1.0);
+                let t = if zeta < 0.0 { -1.0 } else { 1.0 } / (zeta.abs() + libm::hypot(zeta, 1.0));
+                let c = 1.0 / libm::hypot(t, 1.0);
                 for matrix in [&mut u, &mut v] {
                     let (mut left, mut right) = matrix.columns_range_pair_mut(i, j);
                     for (x, y) in left.iter_mut().zip(right.iter_mut()) {

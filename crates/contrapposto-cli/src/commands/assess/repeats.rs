@@ -50,7 +50,7 @@ mod tests {
         let motion: Vec<_> = (0..=60)
             .map(|i| {
                 let mut posture = model.default_posture();
-                posture.values_mut()[elbow] = 1.0 - (2.0 * std::f64::consts::PI * f64::from(i) / 40.0).cos();
+                posture.values_mut()[elbow] = 1.0 - libm::cos(2.0 * std::f64::consts::PI * f64::from(i) / 40.0);
                 (0.05 * f64::from(i), posture)
             })
             .collect();

@@ -117,7 +117,7 @@ mod tests {
         let shape = WrapShape::Torus { tube, circle };
         let found = shape.spread(&V::new(tube + circle, 0.0, 0.0), &V::y(), 0.02);
         let rate = (1.0 / (tube * (tube + circle))).sqrt();
-        let (sin, cos) = (rate * 0.02).sin_cos();
+        let (sin, cos) = libm::sincos(rate * 0.02);
         let expected = [[cos, sin / rate], [-rate * sin, cos]];
         for (ours, theirs) in found.iter().flatten().zip(expected.iter().flatten()) {
             assert!((ours - theirs).abs() < 1e-8 * theirs.abs().max(1.0), "{found:?} {expected:?}");
