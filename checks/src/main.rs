@@ -48,6 +48,9 @@ mod tests {
     use super::*;
     use std::path::{Path, PathBuf};
 
+    /// End of the names of the page's tests.
+    const TEST_OF_THE_PAGE: &str = ".test.mjs";
+
     /// Rust files of a folder and of those below it, in order.
     fn sources(folder: &Path) -> Vec<PathBuf> {
         let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -100,11 +103,11 @@ mod tests {
         assert!(programs >= 3, "{programs}");
     }
 
-    /// Names in back quotes that look like those of tests: words joined by underscores, three words or more.
+    /// Names in back quotes that look like those of tests: words joined by underscores, or files of tests of the page.
     fn tests_named_in(line: &str) -> Vec<&str> {
         let quoted = line.split('`').skip(1).step_by(2);
-        let plain = |name: &&str| name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-        quoted.filter(plain).filter(|name| name.contains('_')).collect()
+        let plain = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        quoted.filter(|name| plain(name) && name.contains('_') || name.ends_with(TEST_OF_THE_PAGE)).collect()
     }
 
     #[test]
@@ -121,6 +124,10 @@ mod tests {
             let names = tests_named_in(row.split('|').nth(2).unwrap());
             assert!(!names.is_empty(), "no test holds: {row}");
             for name in names {
+                if name.ends_with(TEST_OF_THE_PAGE) {
+                    assert!(root.join(name).is_file(), "docs/reliability.md names {name}, which does not exist");
+                    continue;
+                }
                 let function = format!("fn {name}(");
                 // The attributes of a test stand in the few lines above it.
                 let is_test = |text: &String| {

@@ -26,7 +26,6 @@ fn written(folder: &Path, text: &str) -> PathBuf {
 fn one_leg_rests_by_a_slouch_or_level() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    // Arms that must hang lead the search to a third posture of twice the effort.
     let text = format!("arms_hang = false\n{}", std::fs::read_to_string(standing()).unwrap());
     let run = relax(&written(folder.path(), &text), &["--json", "--figures", "--out", out.to_str().unwrap()]);
     assert_eq!(run.code, 0, "{}", run.stderr);
@@ -35,19 +34,22 @@ fn one_leg_rests_by_a_slouch_or_level() {
     assert_eq!(run.stdout, text);
     let found: Value = serde_json::from_str(&text).unwrap();
     let postures = found["postures"].as_array().unwrap();
-    assert_eq!(postures.len(), 2);
+    // The search may find a third way, on a bent knee, of about 2.5 times the effort.
+    assert!((2..=3).contains(&postures.len()), "{}", postures.len());
+    let names: Vec<String> = (1..=postures.len()).map(|number| format!("posture {number}")).collect();
     let hips: Vec<f64> =
         postures.iter().map(|p| p["coordinates"]["hip_adduction_r"].as_f64().unwrap().to_degrees()).collect();
     let efforts: Vec<f64> = postures.iter().map(|p| p["effort"].as_f64().unwrap()).collect();
     println!("hips {hips:?} deg, efforts {efforts:?}");
     assert!(hips[0] > 18.0 && hips[1] < 8.0 && efforts[0] < 0.7 * efforts[1]);
+    assert!(efforts[2..].iter().all(|effort| *effort > 1.5 * efforts[1]));
     // Stored efforts, which a better search may lower.
     assert!(efforts[0] < 0.04274223482932177 * (1.0 + 1e-6) && efforts[1] < 0.06332232232210147 * (1.0 + 1e-6));
-    // The page shows both, as they stand in relax.json, to choose between.
+    // The page shows them, as they stand in relax.json, to choose between.
     let page = page(&out);
-    assert_eq!(page["names"], serde_json::json!(["posture 1", "posture 2"]));
+    assert_eq!(page["names"], serde_json::json!(names));
     let hip = joint(&page, "hip_adduction_r");
-    let angles = column(&hip["angle"], 2);
+    let angles = column(&hip["angle"], names.len());
     let hanging = &postures[0]["hanging"][0];
     assert_eq!(hanging["coordinate"], "hip_adduction_r");
     // Both are angles about the axis of adduction, which differ from the coordinate where the hip is flexed and turned.
@@ -55,14 +57,14 @@ fn one_leg_rests_by_a_slouch_or_level() {
     assert!(angles.iter().zip(&hips).all(|(shown, found)| (shown - found).abs() < 1.0), "{angles:?} {hips:?}");
     assert_eq!(page["joints"][page["main"].as_u64().unwrap() as usize]["name"], "hip_adduction_r");
     for (key, torque) in [("external", "external_nm"), ("passive", "passive_nm")] {
-        assert!((column(&hip[key], 2)[0] - hanging[torque].as_f64().unwrap()).abs() < 0.006, "{key}");
+        assert!((column(&hip[key], names.len())[0] - hanging[torque].as_f64().unwrap()).abs() < 0.006, "{key}");
     }
-    assert_eq!(hip["balance"].as_array().unwrap().len(), 2, "a curve for each");
-    let share = column(&page["supports"][0]["share"], 2)[0];
+    assert_eq!(hip["balance"].as_array().unwrap().len(), names.len(), "a curve for each");
+    let share = column(&page["supports"][0]["share"], names.len())[0];
     assert!((share - postures[0]["supports"][0]["share"].as_f64().unwrap()).abs() < 6e-4);
     let page_entries = page["list"]["entries"].as_array().unwrap();
     assert!(page_entries[0]["text"].as_str().unwrap().contains("right hip adduction at 23.3°"), "{}", page_entries[0]);
-    assert_eq!((page_entries.len(), &page_entries[1]["frame"]), (2, &serde_json::json!(1)));
+    assert_eq!((page_entries.len(), &page_entries[1]["frame"]), (names.len(), &serde_json::json!(1)));
     for (entry, posture) in page_entries.iter().zip(postures) {
         let ends = if posture["fails_first"].is_null() { "no limit by muscles." } else { "fails." };
         assert!(entry["text"].as_str().unwrap().ends_with(ends), "{entry}");
@@ -84,9 +86,9 @@ fn one_leg_rests_by_a_slouch_or_level() {
     }
     // Files: one row a posture, one row a posture and coordinate, torques that add up to nothing.
     let mot = std::fs::read_to_string(out.join("postures.mot")).unwrap();
-    assert_eq!(mot.lines().skip_while(|line| !line.starts_with("time")).count(), 1 + 2);
+    assert_eq!(mot.lines().skip_while(|line| !line.starts_with("time")).count(), 1 + names.len());
     let csv = std::fs::read_to_string(out.join("relax.csv")).unwrap();
-    assert_eq!(csv.lines().count(), 1 + 2 * found["coordinate_order"].as_array().unwrap().len());
+    assert_eq!(csv.lines().count(), 1 + names.len() * found["coordinate_order"].as_array().unwrap().len());
     for row in csv.lines().skip(1) {
         let cells: Vec<&str> = row.split(',').collect();
         let torques: f64 = cells[4..7].iter().map(|cell| cell.parse::<f64>().unwrap()).sum();

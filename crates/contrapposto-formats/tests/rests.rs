@@ -13,7 +13,7 @@ use contrapposto_formats::{read_run, read_scenario};
 /// Height of the table, m.
 const HEIGHT: f64 = 0.72;
 
-/// The right hand at work over a low table, the trunk bent forward.
+/// The job of `scenarios/low-table.toml`: the right hand at work over a low table, the trunk bent forward.
 fn text(table: &str, run: &str) -> String {
     format!(
         r#"format = 1
@@ -25,13 +25,16 @@ arm_flex_r_deg = 60
 elbow_flex_r_deg = 30
 [[table]]
 height_m = {HEIGHT}
-edge_m = 0.25
+edge_m = 0.14
 {table}
 [[task]]
 kind = "point"
 segment = "hand_r"
-target_m = [0.70, 0.80, 0.15]
+target_m = [0.62, 0.76, 0.00]
 above_relief = true
+[[task]]
+kind = "look_at"
+target_m = [0.62, 0.76, 0.00]
 [[task]]
 kind = "effort"
 [strategy]
@@ -59,7 +62,7 @@ fn palm(scenario: &Scenario, values: &[f64]) -> (f64, f64, f64) {
     let back = kinematics.placement(model, hand).translation.vector;
     let outward = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).normalize();
     let outward = if outward.dot(&(corners[0] - back)) < 0.0 { -outward } else { outward };
-    let [ahead, aside, thickness] = [0.25, 0.70, 0.03];
+    let [ahead, aside, thickness] = [0.14, 0.70, 0.03];
     let depth = |c: &nalgebra::Vector3<f64>| {
         let inside = [HEIGHT - c.y, c.y - (HEIGHT - thickness), c.x - ahead, aside - c.z.abs()];
         inside.into_iter().fold(f64::INFINITY, f64::min)
@@ -199,8 +202,8 @@ fn a_free_hand_that_reaches_a_table_is_offered_a_rest_there_and_no_other_hand_is
     assert!((hand.height - HEIGHT).abs() < 1e-12);
     let Place::Free(region) = &hand.support.place else { panic!("its place is fixed") };
     for corner in &region.corners {
-        // On the top of the table, 0.7 m deep from 0.25 m on and 1.4 m wide.
-        assert!((corner.y - HEIGHT).abs() < 1e-12 && (0.25..=0.95).contains(&corner.x) && corner.z.abs() <= 0.7);
+        // On the top of the table, 0.7 m deep from 0.14 m on and 1.4 m wide.
+        assert!((corner.y - HEIGHT).abs() < 1e-12 && (0.14..=0.84).contains(&corner.x) && corner.z.abs() <= 0.7);
     }
     // The change is the rest that the file would have.
     let changed = Change::Hand(hand.clone()).apply(&alone);
@@ -209,6 +212,6 @@ fn a_free_hand_that_reaches_a_table_is_offered_a_rest_there_and_no_other_hand_is
     assert!((changed.rests[0].inward - rest.inward).norm() < 1e-12);
     assert!(Run::new(&changed).is_ok());
     assert!(offered(&changed).is_empty(), "a hand that may rest already is offered nothing");
-    let far = text("", "duration_s = 1").replace("edge_m = 0.25", "edge_m = 1.5");
+    let far = text("", "duration_s = 1").replace("edge_m = 0.14", "edge_m = 1.5");
     assert!(offered(&read_scenario("far.toml", far.as_bytes(), None).unwrap()).is_empty(), "out of reach");
 }

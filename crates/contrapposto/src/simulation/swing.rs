@@ -115,7 +115,7 @@ impl Planner<'_> {
             let target = Placement::from_parts((along(line, share) + height).into(), rotation);
             engine.levels_mut()[0].tasks[0] = self.held_at(target, lifted);
             let Some(_) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
-            if k % steps == 0 && k < count {
+            if k % steps == 0 {
                 let held = self.is_held(&mut engine, &posture)?;
                 if !held || self.enters_a_thing(lifted, engine.torques().kinematics()) {
                     return Ok(None);
@@ -124,10 +124,16 @@ impl Planner<'_> {
             }
         }
         // The last of the way: until the support has come to rest on its place.
-        for _ in 0..MOST_STEPS_OF_PART {
+        for k in 1..=MOST_STEPS_OF_PART {
             let Some(largest) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
             if largest <= AT_POSTURE && engine.report(&posture)?.first().is_some_and(|level| level.length <= PLACED) {
                 break;
+            }
+            if k % steps == 0 {
+                if !self.is_held(&mut engine, &posture)? {
+                    return Ok(None);
+                }
+                path.push(&posture, Some(self.numbers[lifted]));
             }
         }
         let missed = engine.report(&posture)?.first().map_or(0.0, |level| level.length);
