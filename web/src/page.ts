@@ -3,7 +3,7 @@ import { make } from "./dom";
 import { bands } from "./colours";
 import type { Answer, Played, Request, Scene, Shown, Vector } from "./messages";
 import { forget, keep, type Kept } from "./kept";
-import type { Panel } from "./panel";
+import { carried, type Panel } from "./panel";
 import type { Recorded } from "./recorded";
 import type { Rest } from "./rest";
 import { Refused, Solver } from "./solver";
@@ -126,6 +126,7 @@ export class Page {
       this.tell("");
       // A run ends with a reset: nothing of it is left.
       if (request.do !== "reset") await this.leaveRun();
+      else this.rest?.clear();
       await this.ask(request);
       if (settles) await this.settle(goesOn);
     });
@@ -264,9 +265,8 @@ export class Page {
     if (!scene || !shown) return;
     const loads = scene.coordinates.map(({ groups }, i) => ({ group: groups?.[shown.active[i] >= 0 ? 0 : 1], share: Math.round(100 * shown.load[i]) }));
     const working = loads.filter(({ group, share }) => group && share > 0).sort((a, b) => b.share - a.share);
-    const label = (i: number) => scene.segments.find(({ name }) => name === scene.supports[i])?.label ?? "";
-    const shares = shown.contacts.map(({ share }, i) => texts.share(label(i), `${Math.round(100 * share)} %`));
-    const words = `${shown.verdict.sentence} ${texts.described(working.slice(0, 3).map(({ group, share }) => texts.highest(group!, share)), shares)}`;
+    const highest = working.slice(0, 3).map(({ group, share }) => texts.highest(group!, share));
+    const words = `${shown.verdict.sentence} ${texts.described(highest, carried(scene, shown))}`;
     if (byId("described").textContent !== words) byId("described").textContent = words;
   }
 

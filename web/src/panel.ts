@@ -49,6 +49,13 @@ function section(title: string, ...children: (Node | string)[]): HTMLElement {
   return make("section", {}, make("h2", { textContent: title }), ...children);
 }
 
+/** What each support carries, as a share of what all of them carry: of body and loads. */
+export function carried(scene: Scene, { contacts }: Shown): string[] {
+  const all = contacts.reduce((sum, { share }) => sum + share, 0);
+  const label = (segment?: string) => scene.segments.find(({ name }) => name === segment)?.label ?? segment ?? "";
+  return contacts.map(({ share }, i) => texts.share(label(scene.supports[i]), `${Math.round((100 * share) / (all > 0 ? all : 1))} %`));
+}
+
 export class Panel {
   private scene?: Scene;
   private readonly part = make("select", { id: "part" });
@@ -282,9 +289,7 @@ export class Panel {
       const values = `${texts.external} ${torque(shown.external[index])}, ${texts.passive} ${torque(shown.passive[index])}, ${texts.active} ${torque(shown.active[index])} ${texts.quantity}`;
       this.numbers.textContent = `${angle}°: ${values}; ${texts.load} ${Math.round(100 * shown.load[index])} %`;
     }
-    const label = (segment: string) => scene.segments.find(({ name }) => name === segment)?.label ?? segment;
-    const share = ({ share }: { share: number }, i: number) => texts.share(label(scene.supports[i] ?? ""), `${Math.round(100 * share)} %`);
-    this.contacts.textContent = shown.contacts.map(share).join(", ");
+    this.contacts.textContent = carried(scene, shown).join(", ");
   }
 
   drawChart(balance: Balance, shown: Shown): void {

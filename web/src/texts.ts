@@ -72,7 +72,7 @@ export const texts = {
     title: "Things",
     thing: "Thing",
     put: "Put it there",
-    anew: "The body begins anew, but for a bag. Heights are above the floor, distances ahead of the hips of the standing body.",
+    anew: "With a thing the body starts again from its first posture; with a bag it keeps the present one. Heights are above the floor, distances ahead of the hips of the standing body.",
     away: (name: string) => `Take away: ${name}`,
     names: {
       box: "box in both hands", bag: "bag", tool: "tool in one hand", handle: "handle to push or pull", step: "step under a foot", floor: "one foot ahead",
@@ -122,7 +122,7 @@ export const texts = {
     stop: "Stop",
     stopped: "The search was stopped.",
     sought: (count: number) => `Searching: ${count} postures sought so far …`,
-    found: (count: number) => (count === 1 ? "One way to rest. A press goes there." : `${count} ways to rest, the one of least effort first. A press goes there.`),
+    found: (count: number) => (count === 1 ? "One way to rest. Press it to take that posture." : `${count} ways to rest, the one of least effort first. Press one to take that posture.`),
     way: (number: number, effort: number, joints: string[]) =>
       `${number}: effort ${effort.toFixed(4)}${joints.length ? `; on ligaments: ${joints.slice(0, 3).join(", ")}${joints.length > 3 ? ` and ${joints.length - 3} more` : ""}` : "; nothing on ligaments"}`,
   },

@@ -48,6 +48,9 @@ test("the mouse drags a hand, 5 kg change the torques, undo brings the posture b
   const loaded = await result(page);
   const change = loaded.external[shoulder] - dragged.external[shoulder];
   t.diagnostic(`external torque of the shoulder ${dragged.external[shoulder]}, with 5 kg ${loaded.external[shoulder]} N m`);
+  // Shares of the weight are those of body and loads: 100 % together, but for the digits that are left out.
+  const weights = (await page.textContent("#contacts")).match(/\d+(?= %)/g).map(Number);
+  assert.ok(weights.length > 1 && Math.abs(weights.reduce((a, b) => a + b) - 100) <= weights.length / 2, String(weights));
   // 5 kg, 2 cm or more before the axis of the shoulder.
   assert.ok(Math.abs(change) > 5 * 9.81 * 0.02, `external torque of the shoulder changed by ${change} N m`);
 
