@@ -37,7 +37,7 @@ export class Help {
       ),
     );
     this.tip.setAttribute("role", "status");
-    byId("views").append(open);
+    byId("jumps").append(open);
     document.body.append(this.dialog, this.tip);
     addEventListener("keydown", (event) => {
       if (event.key === "Escape" && this.step >= 0) this.show(-1);

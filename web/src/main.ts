@@ -7,6 +7,7 @@ import type { Request, Vector } from "./messages";
 import { button, make } from "./dom";
 import { Help } from "./help";
 import { recall } from "./kept";
+import { jumps } from "./jumps";
 import { keepForOffline } from "./offline";
 import { Page, byId } from "./page";
 import { Panel } from "./panel";
@@ -86,6 +87,7 @@ function listen(): void {
 
 page.view = makeView();
 page.rest = new Rest(page);
+byId("panel").prepend(jumps(byId("panel"), byId("rests")));
 page.recorded = new Recorded(page);
 byId("views").ariaLabel = texts.views;
 byId("views").append(make("span", { textContent: texts.views }), ...sides.map((side) => button(texts.sides[side], `view-${side}`, () => page.view?.lookFrom(side))));

@@ -117,7 +117,9 @@ export const texts = {
   load: "load",
   angle: "angle",
   chart: (joint: string) => `External and passive torque of ${joint} over its range; the distance of the curves is the torque of muscles.`,
+  jumps: "Parts of the page",
   rest: {
+    title: "Ways to rest",
     find: "Find ways to rest",
     stop: "Stop",
     stopped: "The search was stopped.",

@@ -97,6 +97,10 @@ test("the legs alone are ready; a percentile gives a size and its words", async 
   await page.selectOption("#region", "");
   assert.deepEqual([await page.isChecked("#passive"), await page.isChecked("#active")], [false, false], "neither is that of the whole body");
   await page.selectOption("#sex", "male");
+  // A button on top of the panel brings the part of the page into view, and the keyboard with it.
+  await page.click("#jumps button:has-text('Body')");
+  assert.equal(await page.evaluate(() => document.activeElement.closest("section")?.querySelector("h2").textContent), "Body");
+  assert.ok(await page.evaluate(() => document.activeElement.getBoundingClientRect().bottom < innerHeight));
   await page.waitForFunction(() => document.querySelector("#percentiles").textContent.length > 0);
   await atRest(page);
   await slide(page, "#percentile", 5);
