@@ -8,6 +8,7 @@ export function jumps(panel: HTMLElement, rests: HTMLElement): HTMLElement {
     part.querySelector<HTMLElement>("button:not(:disabled), select, input")?.focus({ preventScroll: true });
   };
   const named: [string, HTMLElement][] = [...panel.querySelectorAll<HTMLElement>("section:not([hidden])")].map((part) => [part.querySelector("h2")?.textContent ?? "", part]);
+  // The ways to rest stand below the picture; their button follows that of the things.
   named.splice(3, 0, [texts.rest.title, rests]);
   return make("nav", { id: "jumps", ariaLabel: texts.jumps }, ...named.map(([name, part], i) => button(name, `jump-${i}`, () => go(part))));
 }
