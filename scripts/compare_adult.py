@@ -37,7 +37,7 @@ opensim.Logger.removeFileSink()
 
 
 def exchange(folder):
-    command = ["cargo", "test", "-q", "-p", "contrapposto-formats", "--test", "write", "exchange", "--", "--ignored"]
+    command = ["cargo", "test", "-q", "-p", "contrapposto-formats", "--test", "all", "write::peers::exchange", "--", "--ignored", "--exact"]
     subprocess.run(command, cwd=HERE, check=True, env={**os.environ, "CONTRAPPOSTO_EXCHANGE": str(folder)})
 
 

@@ -23,7 +23,7 @@ LIMIT = 1e-5
 
 
 def exchange(folder):
-    command = ["cargo", "test", "-q", "-p", "contrapposto-formats", "--test", "write", "exchange_motion", "--", "--ignored"]
+    command = ["cargo", "test", "-q", "-p", "contrapposto-formats", "--test", "all", "write::motion::exchange_motion", "--", "--ignored", "--exact"]
     subprocess.run(command, cwd=HERE, check=True, env={**os.environ, "CONTRAPPOSTO_EXCHANGE": str(folder)})
 
 

@@ -206,7 +206,7 @@ def keep(name, tool, found):
 def main():
     KEPT.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        command = ["cargo", "test", "-q", "-p", "contrapposto-formats", "--test", "write", "peers::exchange", "--", "--ignored", "--exact"]
+        command = ["cargo", "test", "-q", "-p", "contrapposto-formats", "--test", "all", "write::peers::exchange", "--", "--ignored", "--exact"]
         subprocess.run(command, cwd=HERE, check=True, env={**os.environ, "CONTRAPPOSTO_EXCHANGE": folder})
         for number, name, *_ in MODELS:
             for ending in ("osim", "urdf", "xml"):

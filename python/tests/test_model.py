@@ -27,11 +27,11 @@ PART = """<mujoco><worldbody><body name="arm"><joint name="elbow" axis="0 1 0" r
 
 def test_the_adult_has_the_mass_and_coordinates_that_it_is_given(woman: Model) -> None:
     assert woman.mass == pytest.approx(60, rel=1e-3)
-    assert len(woman.coordinate_names) == 43 == len(woman.coordinate_units) == len(woman.default_posture)
+    assert len(woman.coordinate_names) == 45 == len(woman.coordinate_units) == len(woman.default_posture)
     assert woman.coordinate_units[woman.coordinate_names.index("pelvis_tx")] == "m"
     assert "hand_r" in woman.segment_names
     assert Model.adult().mass == pytest.approx(73.0, rel=1e-3)
-    assert "43 coordinates" in repr(woman)
+    assert "45 coordinates" in repr(woman)
 
 
 @pytest.mark.parametrize(

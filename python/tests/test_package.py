@@ -21,7 +21,7 @@ def time_to_interrupt() -> float:
     script = (
         "import numpy as np, threading, time, contrapposto\n"
         "model = contrapposto.Model.adult()\n"
-        "q = np.zeros((400_000, 43))\n"
+        "q = np.zeros((400_000, 45))\n"
         # The interpreter's lock is free again once the inputs are copied.
         "threading.Thread(target=lambda: (time.sleep(0.1), print('copied', flush=True))).start()\n"
         "try:\n"

@@ -25,7 +25,7 @@ def test_torques_of_10000_postures_equal_those_of_the_program_to_the_last_bit(
     woman: Model, random_postures: np.ndarray, program: str, tmp_path: Path
 ) -> None:
     ours = woman.torques(random_postures, loads=["hand_r 3kg"])
-    assert ours.active.shape == (10_000, 43)
+    assert ours.active.shape == (10_000, 45)
     table, out = tmp_path / "postures.csv", tmp_path / "torques.json"
     with table.open("w") as file:
         file.write(",".join(["time", *woman.coordinate_names]) + "\n")
@@ -66,7 +66,7 @@ LAYOUTS = {
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_every_layout_gives_the_same_bits(woman: Model, random_postures: np.ndarray, layout: str) -> None:
-    q = random_postures[:43]  # square: a swap of the axes keeps the shape
+    q = random_postures[:45]  # square: a swap of the axes keeps the shape
     given = LAYOUTS[layout](q)
     assert equal(woman.torques(given), woman.torques(q))
 
@@ -74,17 +74,17 @@ def test_every_layout_gives_the_same_bits(woman: Model, random_postures: np.ndar
 def test_float32_and_whole_numbers_are_taken_by_value(woman: Model, random_postures: np.ndarray) -> None:
     q = random_postures[:5].astype(np.float32)
     assert equal(woman.torques(q), woman.torques(q.astype(np.float64)))
-    zeros = np.zeros((2, 43))
+    zeros = np.zeros((2, 45))
     assert equal(woman.torques(zeros.astype(int)), woman.torques(zeros))
 
 
 def test_a_row_alone_gives_rows_alone(woman: Model, random_postures: np.ndarray) -> None:
     many = woman.torques(random_postures[:3])
     one = woman.torques(random_postures[1])
-    assert one.active.shape == (43,)
+    assert one.active.shape == (45,)
     assert one.active.tobytes() == many.active[1].tobytes()
-    empty = woman.torques(np.zeros((0, 43)))
-    assert empty.active.shape == (0, 43)
+    empty = woman.torques(np.zeros((0, 45)))
+    assert empty.active.shape == (0, 45)
 
 
 def test_names_of_a_dictionary_or_table_choose_columns(woman: Model) -> None:
@@ -95,7 +95,7 @@ def test_names_of_a_dictionary_or_table_choose_columns(woman: Model) -> None:
     expected = woman.torques(table)
     assert equal(woman.torques({"elbow_flex_r": angles}), expected)
     assert equal(woman.torques(pandas.DataFrame({"elbow_flex_r": angles})), expected)
-    assert woman.torques({"elbow_flex_r": 0.5}).active.shape == (43,)
+    assert woman.torques({"elbow_flex_r": 0.5}).active.shape == (45,)
     with pytest.raises(InputError, match="no coordinate `elbow`") as error:
         woman.torques({"elbow": 0.5})
     assert error.value.coordinate == "elbow"
@@ -129,13 +129,13 @@ def test_of_several_refused_rows_the_first_is_named_for_any_number_of_threads(wo
 @pytest.mark.parametrize(
     ("q", "message"),
     [
-        (np.zeros((3, 42)), "postures have 42 values; the model has 43 coordinates"),
-        (np.zeros(44), "postures have 44 values; the model has 43 coordinates"),
-        (np.zeros((2, 3, 43)), r"shape \(2, 3, 43\)"),
-        (np.zeros((2, 43), complex), "complex128; it must hold real numbers"),
-        (np.zeros((2, 43), bool), "bool; it must hold real numbers"),
-        (np.full((2, 43), "0"), "it must hold real numbers"),
-        (np.full((2, 43), None), "object; it must hold real numbers"),
+        (np.zeros((3, 44)), "postures have 44 values; the model has 45 coordinates"),
+        (np.zeros(46), "postures have 46 values; the model has 45 coordinates"),
+        (np.zeros((2, 3, 45)), r"shape \(2, 3, 45\)"),
+        (np.zeros((2, 45), complex), "complex128; it must hold real numbers"),
+        (np.zeros((2, 45), bool), "bool; it must hold real numbers"),
+        (np.full((2, 45), "0"), "it must hold real numbers"),
+        (np.full((2, 45), None), "object; it must hold real numbers"),
         (None, "object; it must hold real numbers"),
     ],
 )
@@ -181,12 +181,12 @@ def test_a_load_of_its_own_on_each_posture(woman: Model, random_postures: np.nda
 )
 def test_odd_loads_are_refused_by_name(woman: Model, load: object, message: str) -> None:
     with pytest.raises(InputError, match=message):
-        woman.torques(np.zeros((3, 43)), loads=[load])  # type: ignore[list-item]
+        woman.torques(np.zeros((3, 45)), loads=[load])  # type: ignore[list-item]
 
 
 def test_torques_of_a_device_count_as_external(woman: Model, random_postures: np.ndarray) -> None:
     q = random_postures[:2]
-    device = np.zeros(43)
+    device = np.zeros(45)
     device[woman.torque_names.index("elbow_flex_r")] = 2.5
     without, with_device = woman.torques(q), woman.torques(q, external=device)
     np.testing.assert_allclose(with_device.external - without.external, np.tile(device, (2, 1)), atol=1e-12)
@@ -194,14 +194,14 @@ def test_torques_of_a_device_count_as_external(woman: Model, random_postures: np
     with pytest.raises(InputError, match="must be"):
         woman.torques(q, external=np.zeros((2, 5)))
     with pytest.raises(InputError, match=f"`{woman.torque_names[1]}` in row 0 is NaN"):
-        woman.torques(q, external=np.where(np.arange(43) == 1, np.nan, 0))
+        woman.torques(q, external=np.where(np.arange(45) == 1, np.nan, 0))
 
 
 def test_the_gradient_agrees_with_central_differences(woman: Model, random_postures: np.ndarray) -> None:
     q, h = random_postures[7], 1e-6
     gradient = woman.gradient(q, loads=["hand_r 3kg"])
-    assert gradient.shape == (43, 43)
-    steps = np.eye(43) * h
+    assert gradient.shape == (45, 45)
+    steps = np.eye(45) * h
     ahead = woman.torques(q + steps, loads=["hand_r 3kg"]).external
     behind = woman.torques(q - steps, loads=["hand_r 3kg"]).external
     np.testing.assert_allclose(gradient, ((ahead - behind) / (2 * h)).T, atol=1e-5)
@@ -249,7 +249,7 @@ def test_an_input_that_changes_meanwhile_changes_nothing(woman: Model, random_po
 
 
 def test_results_are_arrays_in_c_order_that_python_may_keep(woman: Model) -> None:
-    active = woman.torques(np.zeros((4, 43))).active
+    active = woman.torques(np.zeros((4, 45))).active
     assert active.flags.c_contiguous and active.flags.writeable and active.dtype == np.float64
     active[:] = 1.0
     assert (active == 1.0).all()
@@ -259,7 +259,7 @@ def test_to_pandas_has_a_row_a_posture(woman: Model, random_postures: np.ndarray
     pytest.importorskip("pandas")
     torques = woman.torques(random_postures[:3])
     table = torques.to_pandas()
-    assert table.shape == (3, 3 * 43)
+    assert table.shape == (3, 3 * 45)
     np.testing.assert_array_equal(table["elbow_flex_r"]["active"], torques["elbow_flex_r"]["active"])
     with pytest.raises(KeyError, match="lists them"):
         torques["elbow"]

@@ -67,7 +67,7 @@ fn shown_as_found(page: &Value, found: &Value) {
     }
     let target: Vec<f64> = page["targets"][0]["at"].as_array().unwrap().iter().map(|k| column(k, 1)[0]).collect();
     assert!(target.iter().zip([0.45, 1.55, 0.25]).all(|(a, b)| (a - b).abs() < 1e-9), "{target:?}");
-    assert_eq!(page["table"]["rows"].as_array().unwrap().len(), 7);
+    assert_eq!(page["table"]["rows"].as_array().unwrap().len(), 9);
     assert_eq!(page["list"]["entries"], serde_json::json!([]));
 }
 
@@ -144,7 +144,7 @@ fn steps_that_run_out_are_a_failure_and_steps_toward_balance_are_not() {
         "{}",
         run.stderr
     );
-    let run = pose(&scenarios().join("push.toml"), folder.path(), &["--no-suggest"]);
+    let run = pose(&scenarios().join("reach-floor.toml"), folder.path(), &["--no-suggest"]);
     let found: Value = serde_json::from_slice(&std::fs::read(folder.path().join("pose.json")).unwrap()).unwrap();
     assert_eq!((run.code, found["reason"].as_str()), (0, Some("steps")), "{}", run.stderr);
     assert!(

@@ -54,7 +54,11 @@ const SLIDE: [&str; 8] =
     ["position_m", "external_n", "passive_n", "active_n", "fatigue_positive", "fatigue_negative", "case", "goal_m"];
 
 fn columns(coordinate: &str) -> [&'static str; 8] {
-    if ["pelvis_tx", "pelvis_ty", "pelvis_tz"].contains(&coordinate) { SLIDE } else { ROTATION }
+    if coordinate.starts_with("pelvis_t") && coordinate != "pelvis_tilt" || coordinate.starts_with("shoulder_rise") {
+        SLIDE
+    } else {
+        ROTATION
+    }
 }
 
 /// Ends the trials of changes of a job early.

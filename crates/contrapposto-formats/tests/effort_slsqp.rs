@@ -10,6 +10,7 @@ use contrapposto::contact::{Balance, ContactForces};
 use contrapposto::equilibria::equilibria;
 use contrapposto::joint_torques::{JointTorques, Quantities, effort};
 use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Coordinate;
 use contrapposto::posture::Posture;
 use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::tasks::{Task, free_place, held_place};
@@ -41,11 +42,17 @@ fn kept() -> Vec<Kept> {
     let read = scenarios.map(|(name, found)| {
         let before: PathBuf = here.join(format!("tests/data/effort_slsqp/{name}.toml"));
         let file = if before.exists() { before } else { here.join(format!("../../scenarios/{name}.toml")) };
-        // SLSQP knew no task of idle arms.
-        let text = format!("arms_hang = false\n{}", std::fs::read_to_string(file).unwrap());
-        let scenario = read_relax(name, text.as_bytes(), None).unwrap();
-        let coordinates = scenario.model.coordinates().iter();
-        let values = coordinates.map(|c| found["best"]["coordinates"][&c.name].as_f64().unwrap()).collect();
+        // SLSQP knew no task of idle arms, and a girdle that does not move.
+        let text = format!("arms_hang = false\nshoulder_rhythm = false\n{}", std::fs::read_to_string(file).unwrap());
+        let mut scenario = read_relax(name, text.as_bytes(), None).unwrap();
+        let girdle = ["shoulder_rise_r", "shoulder_rise_l"].map(|name| scenario.model.coordinate(name).unwrap());
+        scenario.locked.extend(girdle.into_iter().filter_map(|c| scenario.model.coordinates()[c].rate));
+        scenario.locked.sort_unstable();
+        let of_slsqp = |(i, c): (usize, &Coordinate)| {
+            let value = &found["best"]["coordinates"][&c.name];
+            if girdle.contains(&i) { 0.0 } else { value.as_f64().unwrap() }
+        };
+        let values = scenario.model.coordinates().iter().enumerate().map(of_slsqp).collect();
         Kept {
             name: name.clone(),
             effort: found["best"]["effort"].as_f64().unwrap(),

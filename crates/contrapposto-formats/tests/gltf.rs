@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contrapposto::model::{Adult, Model, Placement, adult};
 use contrapposto::posture::Posture;
+use contrapposto::tasks::Height;
 use contrapposto::tracking::track;
 use contrapposto_formats::animation::{Clip, glb};
 use contrapposto_formats::rigs::{Assignment, Fitted, RigUnit, Sizing, Targets, read_gltf, settle_branches};
@@ -26,7 +27,9 @@ fn motion(model: &Model, seed: u128) -> Vec<Posture> {
         .collect();
     let frame = |k: usize| {
         let values = model.coordinates().iter().zip(&ends).map(|(c, end)| c.default + end * k as f64 / 12.0);
-        Posture::new(values.collect())
+        let mut posture = Posture::new(values.collect());
+        Height::raise_shoulders(model, [&mut posture]);
+        posture
     };
     (0..=12).map(frame).collect()
 }

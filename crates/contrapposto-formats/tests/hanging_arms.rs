@@ -12,6 +12,7 @@ use crate::common::runs::{courses, searches};
 const FEET: &str = "[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n";
 /// The hand above the hips.
 const HAND: &str = "[[task]]\nkind = \"point\"\nsegment = \"hand_r\"\ntarget_m = [0.4, 1.2, 0.2]\n";
+const RHYTHM: &str = "humerus_r rhythm + humerus_l rhythm";
 const EFFORT: &str = "[[task]]\nkind = \"effort\"\n";
 /// Greatest angle between a hanging upper arm and the vertical, rad (McAtamney & Corlett 1993).
 const NEUTRAL: f64 = 20.0 * std::f64::consts::PI / 180.0;
@@ -36,9 +37,9 @@ fn hanging(top: &str, rest: &str) -> Vec<String> {
 
 #[test]
 fn arms_without_work_hang_just_above_effort() {
-    assert_eq!(labels("", FEET), ["head upright", "humerus_r hangs + humerus_l hangs", "effort"]);
+    assert_eq!(labels("", FEET), ["head upright", "humerus_r hangs + humerus_l hangs", RHYTHM, "effort"]);
     let with_hand = format!("{FEET}{HAND}{EFFORT}");
-    assert_eq!(labels("", &with_hand), ["point hand_r", "head upright", "humerus_l hangs", "effort"]);
+    assert_eq!(labels("", &with_hand), ["point hand_r", "head upright", "humerus_l hangs", RHYTHM, "effort"]);
     let scenario = relax("", &with_hand);
     assert!(scenario.notes.iter().any(|note| note.contains("`arms_hang = false`")), "{:?}", scenario.notes);
     assert!(!relax("arms_hang = true", &with_hand).notes.iter().any(|note| note.contains("arms_hang")));

@@ -38,7 +38,7 @@ fn idle_arms<'a>(
         ("left", ["hand_l", "radius_l", "ulna_l", "humerus_l"]),
     ] {
         let is_of_arm = |segment: usize| segments.contains(&&*model.segments()[segment].name);
-        let mut work = tasks.clone().filter(|task| !task.hangs(model));
+        let mut work = tasks.clone().filter(|task| !task.hangs(model) && !matches!(task, Task::Height(_)));
         let tasked = work.any(|task| segments.iter().any(|name| task.label(model).contains(name)));
         let carries = supports.iter().any(|support| is_of_arm(support.segment));
         let pulled = loads.iter().any(|load| is_of_arm(load.segment) && !matches!(load.kind, LoadKind::Weight(_)));

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Sex, adult};
 use contrapposto::posture::Posture;
+use contrapposto::tasks::Height;
 use contrapposto::tracking::track;
 use contrapposto_formats::animation::{Clip, bvh};
 use contrapposto_formats::rigs::{
@@ -66,7 +67,9 @@ fn motion(model: &Model, seed: u128) -> Vec<Posture> {
     let frame = |k: usize| {
         let (part, rest) = (k / 10, (k % 10) as f64 / 10.0);
         let share = |c: usize| ends[part][c] * (1.0 - rest) + ends[(part + 1).min(2)][c] * rest;
-        Posture::new((0..n).map(|c| value(c, share(c))).collect())
+        let mut posture = Posture::new((0..n).map(|c| value(c, share(c))).collect());
+        Height::raise_shoulders(model, [&mut posture]);
+        posture
     };
     (0..21).map(frame).collect()
 }
@@ -95,6 +98,9 @@ fn a_motion_of_the_adult_comes_back_from_its_own_bvh() {
         for sizing in [Sizing::Given(size.clone()), Sizing::ToRig(Sex::Male)] {
             let (fitted, found) = tracked(&text, &sizing);
             assert!(!fitted.from_first_frame && fitted.feet_point_ahead);
+            // Shoulders rise by the size that was found.
+            let mut motion = motion.clone();
+            Height::raise_shoulders(&fitted.model, &mut motion);
             for (found, wanted) in found.iter().zip(&motion) {
                 for (c, coordinate) in model.coordinates().iter().enumerate() {
                     let off = (found.values()[c] - wanted.values()[c]).abs();

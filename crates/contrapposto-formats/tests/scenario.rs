@@ -264,8 +264,8 @@ fn a_whole_body_is_read() {
         scenario.tasks.iter().map(|task| (task.goal.tasks.len(), task.above_relief)).collect();
     assert_eq!(
         tasks,
-        [(1, true), (2, false), (1, false), (1, false)],
-        "`head level` is added to the gaze, and a task for the idle arm"
+        [(1, true), (2, false), (1, false), (1, false), (2, false)],
+        "`head level` is added to the gaze, a task for the idle arm, and two for the shoulders"
     );
     // A coordinate's own word, then its region's, then that of the whole body.
     let strategy = |list: &[Strategy], name: &str| list[model.coordinate(name).unwrap()];

@@ -16,7 +16,7 @@ const HAND: &str = "[[task]]\nkind = \"point\"\nsegment = \"hand_r\"\ntarget_m =
 
 /// `top` stands at the top level of the file, `rest` below. Arms are left out (`hanging_arms.rs`).
 fn relax(top: &str, rest: &str) -> RelaxScenario {
-    let text = format!("format = 1\narms_hang = false\n{top}\n{rest}");
+    let text = format!("format = 1\narms_hang = false\nshoulder_rhythm = false\n{top}\n{rest}");
     read_relax("a.toml", text.as_bytes(), None).unwrap_or_else(|error| panic!("{}\n{text}", complaint(&error)))
 }
 
@@ -112,14 +112,14 @@ fn a_body_without_supports_has_no_task_added() {
 #[test]
 fn an_event_still_names_the_tasks_of_the_file() {
     let event = "[[event]]\nat_s = 0.5\ntask = 2\ntarget_m = [0.5, 1.3, 0.3]\n";
-    // Effort first, so that the added tasks (of the head, of the left arm) stand above the one that the event names.
+    // Effort first, so that the added tasks (of the head, of the left arm, of the shoulders) stand above the one that the event names.
     let text = format!("format = 1\n{FEET}{EFFORT}{HAND}{RUN}{event}");
     let RunScenario { scenario, notes, .. } = read_run("a.toml", text.as_bytes(), None).unwrap();
     let kinds: Vec<&str> = scenario.tasks.iter().map(|task| task.goal.tasks[0].kind()).collect();
-    assert_eq!((kinds, notes.len()), (vec!["look_at", "bounds", "effort", "point"], 2));
+    assert_eq!((kinds, notes.len()), (vec!["look_at", "bounds", "height", "effort", "point"], 2));
     let (level, goal) = &scenario.events[0].tasks[0];
     let Task::Point(point) = &goal.tasks[0] else { panic!() };
-    assert_eq!((*level, point.target.y), (3, 1.3));
+    assert_eq!((*level, point.target.y), (4, 1.3));
     let error = read_scenario("a.toml", text.replace("task = 2", "task = 3").as_bytes(), None).unwrap_err();
     assert!(complaint(&error).contains("there is no task 3; the scenario has 2 of them"), "{}", complaint(&error));
 }

@@ -362,6 +362,8 @@ title = "on the hands"
 least_effort = false
 [model]
 adult = { sex = "male", stature_m = 1.85, mass_kg = 73 }
+[coordinates]
+locked = ["shoulder_rise_r", "shoulder_rise_l"]
 [posture]
 ankle_angle_r_deg = 10
 ankle_angle_l_deg = 10

@@ -39,6 +39,12 @@ struct Standing {
     loads: Vec<Load>,
 }
 
+/// The shoulders rise with the arms, as in scenarios.
+fn rhythm(model: &Model) -> PriorityLevel {
+    let tasks = tasks::Height::shoulder_rhythm(model).into_iter().map(|(_, task)| Task::Height(task)).collect();
+    PriorityLevel { tasks, ..PriorityLevel::default() }
+}
+
 impl Standing {
     /// `resting`: the leg that rests, `None` for neither. `hand`: where the hand of the other side must be.
     fn new(resting: Option<&str>, hand: Option<V>) -> Self {
@@ -80,6 +86,7 @@ impl Standing {
             let task = Point { segment, point: V::new(0.0, -0.05, 0.0), target, axes: [true; 3] };
             goals.insert(0, Task::Point(task).into());
         }
+        goals.push(rhythm(&model));
         goals.push(Task::Effort(Effort::whole(&model)).into());
         Self { start, supports, goals, loads: vec![], model }
     }
@@ -309,7 +316,7 @@ fn a_hand_never_leaves_its_target_for_comfort() {
 #[test]
 fn a_body_that_cannot_stand_says_what_is_missing() {
     let mut standing = Standing::new(None, None);
-    standing.goals = vec![Task::Effort(Effort::whole(&standing.model)).into()];
+    standing.goals = vec![rhythm(&standing.model), Task::Effort(Effort::whole(&standing.model)).into()];
     for support in &mut standing.supports {
         // Ice on a slope of 45 degrees.
         support.normal = V::new(1.0, 1.0, 0.0).normalize();

@@ -12,8 +12,8 @@ use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use contrapposto::tasks::{
-    Bounds, Carried, CenterOfMass, CenterOfMassGoal, Component, Distance, Effort, HalfPlane, LookAt, LookAtGoal,
-    Orientation, Placement, Point, Posture, Task, half_planes,
+    Bounds, Carried, CenterOfMass, CenterOfMassGoal, Component, Distance, Effort, HalfPlane, Height, LookAt,
+    LookAtGoal, Orientation, Placement, Point, Posture, Task, half_planes,
 };
 use hierarchical_least_squares::Level;
 use nalgebra::{Isometry3, Unit, UnitQuaternion};
@@ -95,6 +95,13 @@ fn tasks(rng: &mut Pcg64, model: &Model) -> Vec<Task> {
     };
     tasks.push(distance(rng, 0.3, 0.5));
     tasks.push(distance(rng, 0.4, f64::INFINITY));
+    tasks.push(Task::Height(Height {
+        segment: segment(rng),
+        point: vector(rng, 0.3),
+        above: segment(rng),
+        along: unit(rng),
+        height: 0.2,
+    }));
     let mut posture = Posture::whole(model, trees::posture(rng, model));
     for weight in &mut posture.weights {
         *weight *= [0.0, rng.random_range(0.1..3.0)][rng.random_range(0..2)];
@@ -234,7 +241,7 @@ impl Difference for [&[f64]; 2] {
 }
 
 fn report(worst: &BTreeMap<&'static str, (f64, f64, f64)>) {
-    assert_eq!(worst.len(), 9, "{worst:?}");
+    assert_eq!(worst.len(), 10, "{worst:?}");
     for (kind, (error, low, high)) in worst {
         println!("{kind}: worst relative difference {error:.1e}; halved step: error falls by {low:.3}..{high:.3}");
     }
@@ -440,6 +447,31 @@ fn rows_are_added_and_space_is_kept() {
         let same = alone.iter().zip(&level.matrix).all(|(a, b)| (a - b).abs() <= 1e-15 * a.abs().max(1.0));
         assert!(alone.len() == level.matrix.len() && same);
     }
+}
+
+/// The rise of the shoulder that the task asks for, in random postures of trunk and arm, beside the elevation that an independent
+/// formula gives: between the long axes, by the angles of the shoulder alone.
+#[test]
+fn shoulders_rise_by_half_the_cosine_of_elevation() {
+    let mut rng = random("shoulders_rise_by_half_the_cosine_of_elevation");
+    let model = whole_adult();
+    let shoulders = Height::shoulder_rhythm(&model);
+    assert_eq!(shoulders.len(), 2);
+    for side in ["r", "l"] {
+        let index = |stem: &str| model.coordinate(&format!("{stem}_{side}")).unwrap();
+        let rise = index("shoulder_rise");
+        let (_, task) = shoulders.iter().find(|(coordinate, _)| *coordinate == rise).unwrap();
+        let most = 0.314 * model.coordinates()[rise].range.1;
+        for _ in 0..100 {
+            let mut posture = inside(&mut rng, &model);
+            let [flex, add] = ["arm_flex", "arm_add"].map(|stem| posture.values()[index(stem)]);
+            posture.values_mut()[rise] = 0.5 * most * (1.0 - libm::cos(flex) * libm::cos(add));
+            let residual = evaluate(&Task::Height(*task), &model, &posture, &[]).2[0];
+            assert!(residual.abs() < 1e-12, "{side}: {residual}");
+        }
+    }
+    let arm = adult(&Adult { part: contrapposto::model::Part::RightArm, ..Adult::default() }).unwrap();
+    assert!(Height::shoulder_rhythm(&arm).is_empty());
 }
 
 #[test]

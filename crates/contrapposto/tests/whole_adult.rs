@@ -50,7 +50,9 @@ fn every_coordinate_is_sourced() {
         assert_eq!(sources.curve.is_some(), coordinate.passive.is_some(), "{}", coordinate.name);
         assert_eq!(sources.strength.is_some(), coordinate.groups.is_some(), "{}", coordinate.name);
         let root = coordinate.name.starts_with("pelvis_");
-        assert_eq!(coordinate.passive.is_none(), root, "{}", coordinate.name);
+        // Neither muscles nor tissue of the girdle are known.
+        let unknown = root || coordinate.name.starts_with("shoulder_rise");
+        assert_eq!(coordinate.passive.is_none(), unknown, "{}", coordinate.name);
         assert!(coordinate.groups.iter().flatten().all(|g| g.strength.torque(coordinate.default) > 0.0));
         if root || coordinate.kind != CoordinateKind::Rotation {
             continue;
@@ -64,7 +66,7 @@ fn every_coordinate_is_sourced() {
             assert!(curve.slope(q) <= 0.0, "{} at {}", coordinate.name, q.to_degrees());
         }
     }
-    assert_eq!(model.coordinates().len(), 6 + 9 + 2 * 14);
+    assert_eq!(model.coordinates().len(), 6 + 9 + 2 * 15);
 }
 
 #[test]

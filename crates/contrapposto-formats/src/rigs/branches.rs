@@ -13,7 +13,8 @@ use contrapposto::posture::Posture;
 pub fn settle_branches<'p>(model: &Model, postures: impl IntoIterator<Item = &'p mut Posture>) {
     let mut postures: Vec<&mut Posture> = postures.into_iter().collect();
     for segment in model.segments().iter().filter(|segment| segment.parent.is_some()) {
-        let joint = segment.coordinates.clone();
+        let slides = |c: &usize| model.coordinates()[*c].kind == CoordinateKind::Translation;
+        let joint = segment.coordinates.clone().find(|c| !slides(c)).unwrap_or(0)..segment.coordinates.end;
         let turns = model.coordinates()[joint.clone()].iter().all(|c| c.kind == CoordinateKind::Rotation);
         if joint.len() != 3 || !turns {
             continue;

@@ -1,12 +1,14 @@
 //! Makes of each frame of a rig the points that the adult's segments should have: the goals of marker tracking.
 //!
 //! The points belong to a chain of the adult's own lengths whose segments turn as the rig's joints do from the rest pose on, and whose hip centre lies where
-//! the rig's is. So motion of collar bones and stretched bones, which the adult has not, moves nothing else.
+//! the rig's is; its shoulder joints rise with the arms as the adult's do. So motion of collar bones and stretched bones, which the adult has not, moves
+//! nothing else.
 
 use std::f64::consts::TAU;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Placement};
+use contrapposto::tasks::Height;
 use contrapposto::tracking::{Goals, MarkerGoal};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -51,6 +53,8 @@ pub struct Targets<'a> {
     /// Turn of the whole motion about the vertical.
     facing: UnitQuaternion<f64>,
     shown: Vec<Shown>,
+    /// The rhythm of the shoulders: their joints rise with the arms.
+    shoulders: Vec<(usize, Height)>,
     /// Points and their weights.
     pub goals: Goals,
 }
@@ -83,7 +87,8 @@ impl<'a> Targets<'a> {
         let hips = ["femur_r", "femur_l"].map(|name| assignment.needed(name));
         let scale = if fitted.from_first_frame { fitted.metres } else { fitted.scale(rig, assignment) };
         let (origin, facing) = (Vector3::zeros(), UnitQuaternion::identity());
-        let mut targets = Self { rig, fitted, frames, hips, scale, origin, facing, shown, goals };
+        let shoulders = Height::shoulder_rhythm(model);
+        let mut targets = Self { rig, fitted, frames, hips, scale, origin, facing, shown, shoulders, goals };
         targets.facing = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -targets.aside());
         targets.origin = targets.far_origin();
         targets
@@ -135,11 +140,18 @@ impl<'a> Targets<'a> {
         for (index, segment) in model.segments().iter().enumerate() {
             let held = segment.parent.map_or_else(Placement::identity, |parent| chain[parent]);
             let own = self.fitted.turned.iter().find(|turned| turned.segment == index);
+            let rotation = own.map_or(held.rotation, turn);
+            let mut joint = segment.in_parent.translation.vector;
+            if let Some((_, shoulder)) = self.shoulders.iter().find(|(_, shoulder)| shoulder.segment == index) {
+                let along = shoulder.along.into_inner();
+                let cosine = (held.rotation * along).dot(&(rotation * along));
+                joint += along * (shoulder.of_origin(cosine) - along.dot(&joint));
+            }
             let at = match segment.parent {
-                Some(_) => held.transform_point(&segment.in_parent.translation.vector.into()).coords,
+                Some(_) => held.transform_point(&joint.into()).coords,
                 None => self.hips(&placed) - self.origin,
             };
-            chain.push(Placement::from_parts(at.into(), own.map_or(held.rotation, turn)));
+            chain.push(Placement::from_parts(at.into(), rotation));
         }
         chain
     }

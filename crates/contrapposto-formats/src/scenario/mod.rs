@@ -29,6 +29,7 @@ mod rest;
 mod rest_text;
 mod setup;
 mod sharing;
+mod shoulder_rhythm;
 mod simulate;
 mod spread;
 mod stage;

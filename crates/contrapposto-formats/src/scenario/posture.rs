@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
+use contrapposto::tasks::Height;
 
 use super::names::coordinate;
 use super::text::ScenarioText;
@@ -162,9 +163,10 @@ pub(super) fn free(
     Ok(flags)
 }
 
-/// One flag a rate: its coordinate may move.
+/// One flag a rate: its coordinate may move to bring supports and things together. Shoulders do not shrug for that.
 pub(super) fn free_rates(at: &Located, model: &Model, text: &ScenarioText) -> Result<Vec<bool>, InputError> {
-    let free = free(at, model, text, |_| true)?;
+    let mut free = free(at, model, text, |_| true)?;
+    Height::shoulder_rhythm(model).into_iter().for_each(|(rise, _)| free[rise] = false);
     let mut flags = vec![true; model.rates().len()];
     for coordinate in (0..free.len()).filter(|&coordinate| !free[coordinate]) {
         rates(model, coordinate).into_iter().for_each(|rate| flags[rate] = false);

@@ -22,6 +22,7 @@ use super::place::set_places;
 use super::posture::{balls, free, free_rates, rates, set, set_result};
 use super::rest;
 use super::rest_text::RestText;
+use super::shoulder_rhythm::add_shoulder_rhythm;
 use super::stage::{Stage, Start};
 use super::support;
 use super::task_text::SupportText;
@@ -166,10 +167,11 @@ fn add_tasks(
     (loads, resting): (&[Load], &[usize]),
     levels: &mut Vec<Level>,
 ) -> Result<Vec<String>, InputError> {
-    // The other two find their places above the task of effort.
+    // The others find their places above the task of effort.
     let effort = add_least_effort(stage, text, levels)?;
     let upright = add_upright(stage, text, levels)?;
     let arms = add_hanging_arms(stage, text, (loads, resting), levels)?;
+    add_shoulder_rhythm(stage, text, levels)?;
     Ok([upright, arms, effort].into_iter().flatten().map(str::to_owned).collect())
 }
 

@@ -93,6 +93,9 @@ pub(crate) struct ScenarioText {
     pub(crate) upright: Option<bool>,
     /// Arms without work hang, just above effort. When left out: `true` for the built-in adult on supports.
     pub(crate) arms_hang: Option<bool>,
+    /// The shoulder joints rise as the arms are raised, just above effort. When left out: `true` for a body that has their coordinates
+    /// and supports or tasks.
+    pub(crate) shoulder_rhythm: Option<bool>,
     /// Little effort of all muscles is the last task. When left out: `true` in a run of the built-in adult on supports without a task of
     /// kind `effort`.
     pub(crate) least_effort: Option<bool>,

@@ -110,6 +110,7 @@ fn said(model: &Model, neck: &[usize], task: &Task) -> Said {
         Task::LookAt(task) => named(task.segment),
         Task::Bounds(task) => named(task.segment),
         Task::Distance(task) => named(task.a.0) || named(task.b.0),
+        Task::Height(task) => named(task.segment),
         Task::Posture(task) => {
             neck.iter().any(|&i| model.coordinates()[i].rate.is_some_and(|rate| task.weights[rate] > 0.0))
         }

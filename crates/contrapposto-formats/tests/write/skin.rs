@@ -30,7 +30,7 @@ pub(crate) fn people() -> Vec<(Adult, Model)> {
 /// Anywhere within the ranges of all joints, the root anywhere within 1 m.
 pub(crate) fn random(model: &Model, random: &mut Pcg64Mcg) -> Posture {
     let value = |c: &contrapposto::model::Coordinate| match c.kind {
-        CoordinateKind::Translation => random.random_range(-1.0..1.0),
+        CoordinateKind::Translation => random.random_range(c.range.0.max(-1.0)..c.range.1.min(1.0)),
         _ => random.random_range(c.range.0..c.range.1),
     };
     Posture::new(model.coordinates().iter().map(value).collect())

@@ -7,6 +7,7 @@ use super::mirror::Mirror;
 use crate::math::next_number;
 use crate::model::{Coordinate, CoordinateKind, Model};
 use crate::posture::Posture;
+use crate::tasks::Height;
 
 /// Usual number of scattered starts: with so many, six of six scenarios reach the least effort that 50 runs of SLSQP reach (docs/benchmarks.md).
 pub const SCATTERED_STARTS: usize = 32;
@@ -38,12 +39,17 @@ pub(super) fn scattered(model: &Model, start: &Posture, locked: &[usize], k: usi
 }
 
 /// Every coordinate lies a third, two thirds or the whole way (by `k`) from its value in `start` to a random place: of its range, or, where it has
-/// no muscle groups, of the surroundings of that value. So do the starts of `scripts/effort_by_slsqp.py`. Coordinates without a finite range stay.
+/// no muscle groups, of the surroundings of that value. So do the starts of `scripts/effort_by_slsqp.py`. Coordinates without a finite range stay;
+/// shoulders rise with their arms.
 fn drawn(model: &Model, start: &Posture, k: usize) -> Posture {
     let way = (k / 2 % 3 + 1) as f64 / 3.0;
     let mut random = k as u64 + 1;
     let mut step = vec![0.0; model.rates().len()];
+    let shoulders = Height::shoulder_rhythm(model);
     for (rate, turn) in step.iter_mut().enumerate() {
+        if shoulders.iter().any(|(rise, _)| model.rates()[rate].coordinate == Some(*rise)) {
+            continue;
+        }
         let place = 0.5 * (1.0 + next_number(&mut random));
         let Some(coordinate) = model.rates()[rate].coordinate else { continue };
         let Coordinate { range: (lower, upper), groups, kind, .. } = &model.coordinates()[coordinate];
@@ -58,5 +64,6 @@ fn drawn(model: &Model, start: &Posture, k: usize) -> Posture {
     }
     let mut posture = start.clone();
     posture.displace(model, &step);
+    Height::raise_shoulders(model, [&mut posture]);
     posture
 }

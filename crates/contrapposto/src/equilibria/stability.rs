@@ -10,16 +10,19 @@
 //! slides and angles need no weights against each other. Joints without mass behind them get
 //! [`LEAST_MASS`] of the largest entry, so that every `s` is finite.
 //!
+//! A slide within the body of which neither muscles nor tissue are known (the rise of a shoulder) stays in place: somebody holds it, and how
+//! is not known.
+//!
 //! Motions of three-axis joints ([`crate::model::ThreeAxisJoint`]) are rotations about their axes.
 //!
 //! For one joint the result is that of [`crate::hybrid::Equilibrium`]: stable where `d tau_a / d theta > 0`.
 
 use nalgebra::{Cholesky, DMatrix, DVector, SVD, SymmetricEigen};
 
-use crate::contact::Support;
+use crate::contact::{Support, root_rates};
 use crate::hybrid::{Carrier, Equilibrium};
 use crate::joint_torques::JointTorques;
-use crate::model::Model;
+use crate::model::{CoordinateKind, Model};
 use crate::statics::{Load, LoadKind};
 
 /// Share of the largest diagonal entry of the mass matrix that every rate has at least.
@@ -110,8 +113,14 @@ pub fn stability(
     loads: &[Load],
     locked: &[bool],
 ) -> Stability {
+    let root = root_rates(model);
+    let is_held = |coordinate: usize, rate: usize| {
+        let own = &model.coordinates()[coordinate];
+        let unknown = own.groups.is_none() && own.passive.is_none() && own.kind == CoordinateKind::Translation;
+        model.is_dependent(coordinate) || unknown && !root.contains(&rate)
+    };
     let free: Vec<usize> = (0..model.rates().len())
-        .filter(|&i| !locked[i] && model.rates()[i].coordinate.is_none_or(|c| !model.is_dependent(c)))
+        .filter(|&i| !locked[i] && model.rates()[i].coordinate.is_none_or(|c| !is_held(c, i)))
         .collect();
     let basis = free_motions(model, body, supports, &free);
     if basis.ncols() == 0 {

@@ -9,7 +9,7 @@
 use nalgebra::Vector3;
 
 use super::Kinematics;
-use crate::model::{Model, Motion};
+use crate::model::{Drive, Model, Motion};
 
 impl Kinematics {
     /// `d point / d rates` of a point fixed in a segment (m, its frame): 3 rows in ground axes, m/rad (m/m for slides),
@@ -54,6 +54,44 @@ impl Kinematics {
             next = mobility.parent;
         }
         self.fold_columns(model, rows);
+    }
+
+    /// Second derivatives of a point by pairs of motions between the segment `above` and the point's own, seen from `above`: for each pair the
+    /// rate of the outer motion, of the inner one, and the derivative, m in ground axes. A slide has none with what it carries. Nothing where
+    /// `above` does not carry the segment, or a motion between them is a ball, a function or dependent. Does not allocate.
+    pub(crate) fn seconds_of_point(
+        &self,
+        model: &Model,
+        (segment, point): (usize, Vector3<f64>),
+        above: usize,
+        mut add: impl FnMut(usize, usize, Vector3<f64>),
+    ) {
+        let point = self.station(model, segment, point);
+        let (start, end) = (model.segments[segment].mobility, model.segments[above].mobility);
+        let rate = |m: usize| match (&model.mobilities[m].motion, &model.mobilities[m].drive) {
+            (Motion::Ball, _) => None,
+            (_, Drive::Coordinate(c)) if !model.is_dependent(*c) => model.coordinates[*c].rate,
+            _ => None,
+        };
+        let mut next = start;
+        while next != end {
+            let Some(m) = next.filter(|m| rate(*m).is_some()) else { return };
+            next = model.mobilities[m].parent;
+        }
+        let axis = |m: usize| self.axes[model.mobilities[m].rate];
+        let slides = |m: usize| matches!(model.mobilities[m].motion, Motion::Slide(_));
+        let mut inner = start;
+        while let Some(j) = inner.filter(|_| inner != end) {
+            let moved = if slides(j) { axis(j) } else { axis(j).cross(&(point - self.origins[j])) };
+            let mut outer = inner;
+            while let Some(i) = outer.filter(|_| outer != end) {
+                if let (false, Some(by), Some(of)) = (slides(i), rate(i), rate(j)) {
+                    add(by, of, axis(i).cross(&moved));
+                }
+                outer = model.mobilities[i].parent;
+            }
+            inner = model.mobilities[j].parent;
+        }
     }
 
     /// Rows of derivatives by rates as if nothing were coupled become rows with the column of every dependent coordinate

@@ -1,7 +1,8 @@
 //! Builds the adult by sex, stature and mass, or by measured segment lengths.
 //!
 //! Masses, centres and inertias from de Leva 1996; joints, ranges, passive curves, strengths and fatigue classes from
-//! `data/adult.toml`. The shoulder girdle is fixed to the thorax; the pelvis stands on six ordinary root coordinates.
+//! `data/adult.toml`. The shoulder girdle moves the shoulder joints along the thorax; the pelvis stands on six ordinary root
+//! coordinates.
 
 use nalgebra::{Matrix3, Unit, Vector3};
 
@@ -179,16 +180,18 @@ impl Recipe<'_> {
             at += row.at_parent.of(self.size.sex) * self.length_of(parent)? * direction(parent);
         }
         at.z *= side;
-        let fixed = self.size.part == Part::RightArm && row.right_arm == Some(InRightArm::Fixed);
+        // A right arm alone has its shoulder joint where it is with a hanging arm.
+        let alone = self.size.part == Part::RightArm;
         let mut motions = vec![];
         let mut coordinates = vec![];
         for motion in &row.motions {
             let name = &motion.coordinate;
             let found = self.library.adult.coordinate.iter().find(|c| &c.name == name).ok_or_else(|| missing(name))?;
-            // Turning is mirrored in the sagittal plane: the axis keeps its z part only.
-            let axis = Vector3::new(side * motion.axis[0], side * motion.axis[1], motion.axis[2]);
+            // Mirrored in the sagittal plane, the axis of a turn keeps its z part only, that of a slide the other two.
+            let [x, y, z] = motion.axis;
+            let axis = if motion.slide { Vector3::new(x, y, side * z) } else { Vector3::new(side * x, side * y, z) };
             let spec = self.coordinate(found, left)?;
-            if fixed {
+            if alone && (motion.slide || row.right_arm == Some(InRightArm::Fixed)) {
                 // Held at its default: the root's slides lift the body onto its feet.
                 at += if motion.slide { spec.default * axis } else { Vector3::zeros() };
                 continue;
@@ -243,14 +246,15 @@ impl Recipe<'_> {
 
     fn coordinate(&self, row: &CoordinateRow, left: bool) -> Result<CoordinateSpec, AdultError> {
         let missing = |name: &str| AdultError::Data(name.to_owned());
-        let range = match (row.range_deg, row.range_m) {
-            (Some([min, max]), _) => (min.to_radians(), max.to_radians()),
-            (None, Some([min, max])) => (min, max),
-            (None, None) => return Err(missing(&row.name)),
+        let range = match (row.range_deg, row.range_m, row.range_stature) {
+            (Some([min, max]), ..) => (min.to_radians(), max.to_radians()),
+            (_, Some([min, max]), _) => (min, max),
+            (_, _, Some(shares)) => (shares[0] * self.size.stature, shares[1] * self.size.stature),
+            _ => return Err(missing(&row.name)),
         };
         let mut spec = CoordinateSpec::new(&sided(&row.name, left), range);
         spec.positive.clone_from(&row.positive);
-        spec.kind = if row.range_m.is_some() { CoordinateKind::Translation } else { CoordinateKind::Rotation };
+        spec.kind = if row.range_deg.is_some() { CoordinateKind::Rotation } else { CoordinateKind::Translation };
         if let Some(default) = &row.default {
             spec.default = default.stature * self.size.stature;
             for (id, share) in &default.lengths {

@@ -107,6 +107,11 @@ impl Library {
         &self.hazards.hazard
     }
 
+    /// Rise of the shoulder joint along the thorax from the hanging arm to the arm overhead, as a share of the upper end of its range.
+    pub(crate) fn shoulder_rise(&self) -> f64 {
+        self.adult.shoulder_rhythm.rise_of_range
+    }
+
     /// Strength of the grip of a hand.
     pub fn grip(&self) -> &GripRow {
         &self.grip

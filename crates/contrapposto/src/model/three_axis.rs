@@ -82,7 +82,7 @@ impl ThreeAxisJoint {
 
 impl Model {
     /// Joints of three hinges through one point, each moved by a coordinate of its own that is free, uncoupled, and has no
-    /// forces of a file on it. Joints to ground that slide, too, are none.
+    /// forces of a file on it. A joint may slide before it turns, except a joint to ground.
     pub fn three_axis_joints(&self) -> &[ThreeAxisJoint] {
         &self.three_axis
     }
@@ -161,7 +161,27 @@ impl Model {
         };
         let through_one_point = joined(second) && joined(third) && bare(first) && bare(second);
         let others = self.coordinates_at(first, segment);
-        (through_one_point && others == 3).then_some([first, second, third])
+        let carried = self.slides_before(first, segment);
+        (through_one_point && others == 3 + carried).then_some([first, second, third])
+    }
+
+    /// Number of coordinates by which a joint that is not at ground slides before it turns about `first`.
+    fn slides_before(&self, first: usize, segment: usize) -> usize {
+        let own = &self.segments[segment];
+        if own.parent.is_none() {
+            return 0;
+        }
+        let is_own = |drive: &Drive| matches!(drive, Drive::Coordinate(c) if own.coordinates.contains(c));
+        let mut count = 0;
+        let mut next = self.mobilities[first].parent;
+        while let Some(slide) = next.map(|m| &self.mobilities[m]) {
+            if !matches!(slide.motion, Motion::Slide(_)) || !is_own(&slide.drive) {
+                break;
+            }
+            count += 1;
+            next = slide.parent;
+        }
+        count
     }
 
     /// Number of coordinates of the joint, or the joints, between `first` and a segment.

@@ -41,6 +41,15 @@ impl Gradient {
         self.entries[row * self.n + column]
     }
 
+    /// Adds to an entry, and to its image below the diagonal, until the next gradient.
+    pub(crate) fn add_symmetric(&mut self, row: usize, column: usize, value: f64) {
+        self.entries[row * self.n + column] += value;
+        if row != column {
+            self.entries[column * self.n + row] += value;
+        }
+        self.dirty |= self.elements.is_empty();
+    }
+
     /// Row `J tau_e,l` of Eq. 7.
     pub fn row(&self, row: usize) -> &[f64] {
         &self.entries[row * self.n..(row + 1) * self.n]

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::bounds::Carried;
 use super::center_of_mass::CenterOfMassGoal;
+use super::height::Height;
 use super::look_at::LookAtGoal;
 use super::task::Task;
 use crate::kinematics::Kinematics;
@@ -17,6 +18,8 @@ use crate::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 #[derive(Clone, Debug)]
 pub(crate) struct ErrorHessian {
     loads: Vec<Load>,
+    /// Heights, whose axes turn with a segment as no load does, and their weights.
+    heights: Vec<(Height, f64)>,
     torque: ExternalTorque,
     gradient: Gradient,
 }
@@ -24,13 +27,16 @@ pub(crate) struct ErrorHessian {
 impl ErrorHessian {
     /// Space for `tasks`: the loads of each act at two places a pair at most, or at all segments.
     pub(crate) fn new<'t>(model: &Model, tasks: impl Iterator<Item = &'t Task>) -> Self {
-        let loads = tasks.map(|task| match task {
+        let tasks: Vec<&Task> = tasks.collect();
+        let heights = tasks.iter().filter(|task| matches!(task, Task::Height(_))).count();
+        let loads = tasks.iter().map(|task| match task {
             Task::Clearance(task) => 2 * task.pairs.len(),
             Task::Bounds(task) => 2 * task.components.len(),
             _ => 2 + model.segments().len(),
         });
         Self {
             loads: Vec::with_capacity(loads.sum()),
+            heights: Vec::with_capacity(heights),
             torque: ExternalTorque::new(model),
             gradient: Gradient::new(model),
         }
@@ -39,10 +45,14 @@ impl ErrorHessian {
     /// Takes all tasks away.
     pub(crate) fn clear(&mut self) {
         self.loads.clear();
+        self.heights.clear();
     }
 
     /// Adds the errors of a task, one weight each, in the posture of `kinematics`.
     pub(crate) fn add(&mut self, model: &Model, kinematics: &Kinematics, task: &Task, weights: &[f64]) {
+        if let (Task::Height(height), [weight, ..]) = (task, weights) {
+            self.heights.push((*height, *weight));
+        }
         add_gradient_loads(task, model, kinematics, weights, &mut self.loads);
     }
 
@@ -51,6 +61,9 @@ impl ErrorHessian {
     pub(crate) fn evaluate(&mut self, model: &Model, kinematics: &Kinematics) -> Option<&Gradient> {
         self.torque.update_weightless(model, kinematics, &self.loads).ok()?;
         self.torque.gradient(model, kinematics, &mut self.gradient);
+        for (height, weight) in &self.heights {
+            height.add_second_derivative(model, kinematics, *weight, &mut self.gradient);
+        }
         Some(&self.gradient)
     }
 }
@@ -115,7 +128,7 @@ fn add_gradient_loads(task: &Task, model: &Model, kinematics: &Kinematics, weigh
                 loads.push(world(task.segment, Vector3::zeros(), -force));
             }
         }
-        Task::Distance(_) | Task::Posture(_) | Task::Effort(_) => {}
+        Task::Height(_) | Task::Distance(_) | Task::Posture(_) | Task::Effort(_) => {}
     }
 }
 
@@ -192,6 +205,13 @@ mod tests {
                         head,
                         Vector3::y(),
                     ))),
+                }),
+                Task::Height(tasks::Height {
+                    segment: hand,
+                    point: Vector3::new(0.02, -0.1, 0.03),
+                    above: model.segment("torso").unwrap(),
+                    along: Unit::new_normalize(Vector3::new(0.3, 0.9, -0.2)),
+                    height: 0.1,
                 }),
                 // Of spheres above a floor nothing is left out.
                 Task::Clearance(tasks::Clearance {

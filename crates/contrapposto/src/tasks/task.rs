@@ -8,6 +8,7 @@ use super::check::{Check, TaskError};
 use super::clearance::Clearance;
 use super::distance::Distance;
 use super::effort::Effort;
+use super::height::Height;
 use super::look_at::{LookAt, LookAtGoal};
 use super::orientation::Orientation;
 use super::placement::Placement;
@@ -35,6 +36,8 @@ pub enum Task {
     LookAt(LookAt),
     /// Two points within a range of distances.
     Distance(Distance),
+    /// A point at a height above another segment's origin, along an axis of that segment.
+    Height(Height),
     /// Parts of the body apart from each other and from things.
     Clearance(Clearance),
     /// The centre of mass at a place, or over a polygon.
@@ -66,7 +69,7 @@ impl Task {
             Self::LookAt(task) => task.segment == segment,
             Self::Bounds(task) => task.segment == segment,
             Self::Distance(task) => task.a.0 == segment || task.b.0 == segment,
-            Self::Posture(_) | Self::CenterOfMass(_) | Self::Clearance(_) | Self::Effort(_) => false,
+            Self::Height(_) | Self::Posture(_) | Self::CenterOfMass(_) | Self::Clearance(_) | Self::Effort(_) => false,
         }
     }
 
@@ -77,7 +80,7 @@ impl Task {
             Self::Orientation(_) => 3,
             Self::Placement(_) => 6,
             Self::LookAt(_) => 2,
-            Self::Distance(_) => 1,
+            Self::Distance(_) | Self::Height(_) => 1,
             Self::Clearance(task) => task.pairs.len(),
             Self::CenterOfMass(task) => task.rows(),
             Self::Bounds(task) => task.components.len(),
@@ -94,6 +97,7 @@ impl Task {
             Self::Placement(_) => "placement",
             Self::LookAt(_) => "look_at",
             Self::Distance(_) => "distance",
+            Self::Height(_) => "height",
             Self::Clearance(_) => "clearance",
             Self::CenterOfMass(_) => "center_of_mass",
             Self::Bounds(_) => "bounds",
@@ -115,7 +119,7 @@ impl Task {
     }
 
     /// The kind and the segments that it moves, e.g. `point hand_r`; `head upright` for a direction of the head against gravity, `head
-    /// level` for one that has to be square to another, `humerus_l hangs` for one that has to point down. The task must have passed
+    /// level` for one that has to be square to another, `humerus_l hangs` for one that has to point down, `humerus_l rhythm` for a height above another segment. The task must have passed
     /// [`Task::check`].
     pub fn label(&self, model: &Model) -> String {
         let name = |segment: usize| &model.segments()[segment].name;
@@ -134,6 +138,7 @@ impl Task {
             | Self::Placement(Placement { segment, .. })
             | Self::LookAt(LookAt { segment, .. })
             | Self::Bounds(Bounds { segment, .. }) => format!("{kind} {}", name(*segment)),
+            Self::Height(Height { segment, .. }) => format!("{} rhythm", name(*segment)),
             Self::Distance(task) => format!("{kind} {} {}", name(task.a.0), name(task.b.0)),
             Self::Clearance(_) | Self::CenterOfMass(_) | Self::Posture(_) | Self::Effort(_) => kind.to_owned(),
         }
@@ -159,7 +164,7 @@ impl Task {
                 let rates = model.segments()[segment].mobility.map(|mobility| model.rates_of(mobility));
                 rates.into_iter().flatten().any(|rate| task.weights[rate] > 0.0)
             }
-            Self::Clearance(_) | Self::CenterOfMass(_) | Self::Effort(_) => false,
+            Self::Height(_) | Self::Clearance(_) | Self::CenterOfMass(_) | Self::Effort(_) => false,
         }
     }
 
@@ -170,7 +175,9 @@ impl Task {
     pub fn unit(&self, model: &Model, row: usize) -> Unit {
         assert!(row < self.rows(), "row {row} of {}", self.rows());
         match self {
-            Self::Point(_) | Self::Distance(_) | Self::Clearance(_) | Self::CenterOfMass(_) => Unit::Metre,
+            Self::Point(_) | Self::Distance(_) | Self::Height(_) | Self::Clearance(_) | Self::CenterOfMass(_) => {
+                Unit::Metre
+            }
             Self::Orientation(_) | Self::LookAt(_) => Unit::Radian,
             Self::Placement(_) => [Unit::Metre, Unit::Radian][row / 3],
             Self::Bounds(task) => match task.components[row].of {
@@ -194,6 +201,7 @@ impl Task {
             Self::Placement(task) => task.evaluate(model, body, level),
             Self::LookAt(task) => task.evaluate(model, body, level),
             Self::Distance(task) => task.evaluate(model, body, level),
+            Self::Height(task) => task.evaluate(model, body, level),
             Self::Bounds(task) => task.evaluate(model, body, level),
             Self::Clearance(task) => task.evaluate(model, body, level),
             Self::CenterOfMass(task) => task.evaluate(model, body, level),
@@ -214,6 +222,7 @@ impl Task {
             Self::Placement(task) => out.extend(task.error(model, body)),
             Self::LookAt(task) => out.extend(task.error(model, body)),
             Self::Distance(task) => out.push(task.error(model, body)),
+            Self::Height(task) => out.push(task.error(model, body)),
             Self::Bounds(task) => task.residual(model, body, out),
             Self::Clearance(task) => task.residual(model, body, out),
             Self::CenterOfMass(task) => task.residual(body, out),
@@ -234,6 +243,7 @@ impl Task {
             Self::Placement(task) => task.check(&check),
             Self::LookAt(task) => task.check(&check),
             Self::Distance(task) => task.check(&check),
+            Self::Height(task) => task.check(&check),
             Self::Bounds(task) => task.check(&check),
             Self::Clearance(task) => task.check(&check),
             Self::CenterOfMass(task) => task.check(&check),

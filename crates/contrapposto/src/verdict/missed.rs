@@ -100,10 +100,11 @@ fn contradict(a: &Point, b: &Point) -> bool {
 }
 
 /// Whether a task names a place or a direction that the job asks for: not balance, which [`super::VerdictKind::CannotStand`] judges,
-/// not least effort, a posture or an upright head, which take what the targets leave.
+/// not least effort, a posture, a rhythm or an upright head, which take what the targets leave.
 fn is_target(task: &Task) -> bool {
     let condition = is_direction(task) || matches!(task, Task::CenterOfMass(_));
-    !condition && !matches!(task, Task::Effort(_) | Task::Posture(_) | Task::Bounds(_) | Task::Clearance(_))
+    !condition
+        && !matches!(task, Task::Effort(_) | Task::Posture(_) | Task::Bounds(_) | Task::Height(_) | Task::Clearance(_))
 }
 
 /// An upright head or trunk, a direction of the gaze.
@@ -114,7 +115,7 @@ fn is_direction(task: &Task) -> bool {
 /// The unit of all errors of a level.
 pub(super) fn unit(level: &PriorityLevel) -> Option<Unit> {
     let of = |task: &Task| match task {
-        Task::Point(_) | Task::Distance(_) | Task::CenterOfMass(_) => Some(Unit::Metre),
+        Task::Point(_) | Task::Distance(_) | Task::Height(_) | Task::CenterOfMass(_) => Some(Unit::Metre),
         Task::Orientation(_) | Task::LookAt(_) => Some(Unit::Radian),
         _ => None,
     };

@@ -26,7 +26,7 @@ use muscle_counts::muscle_counts;
 
 /// The meaning of the numbers of the adult.
 const NOT_JUDGED: &str = "\nStrength is the torque that all muscles of a direction give together at a joint, and so is their fatigue; single muscles are \
-                          not judged.\nThe shoulder blade is part of the thorax: muscles that hold it (trapezius, serratus anterior) are not judged, and an arm \
+                          not judged.\nThe shoulder joint rises with the arm; muscles that hold the shoulder blade (trapezius, serratus anterior) are not judged, and an arm \
                           above the shoulder is as strong as its curve says.\n";
 
 #[derive(Serialize)]

@@ -51,6 +51,15 @@ pub(crate) struct Shares {
 pub(crate) struct AdultFile {
     pub(crate) segment: Vec<SegmentRow>,
     pub(crate) coordinate: Vec<CoordinateRow>,
+    pub(crate) shoulder_rhythm: RhythmRow,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RhythmRow {
+    pub(crate) rise_of_range: f64,
+    #[expect(dead_code, reason = "stands in the file for its readers")]
+    reference: Reference,
 }
 
 #[derive(Debug, Deserialize)]
@@ -146,6 +155,8 @@ pub(crate) struct CoordinateRow {
     pub(crate) mirrored: bool,
     pub(crate) range_deg: Option<[f64; 2]>,
     pub(crate) range_m: Option<[f64; 2]>,
+    /// As shares of stature.
+    pub(crate) range_stature: Option<[f64; 2]>,
     pub(crate) range_reference: Reference,
     pub(crate) default: Option<DefaultRow>,
     /// Of the whole body; a part of it has zero.
