@@ -14,7 +14,8 @@ pub fn settle_branches<'p>(model: &Model, postures: impl IntoIterator<Item = &'p
     let mut postures: Vec<&mut Posture> = postures.into_iter().collect();
     for segment in model.segments().iter().filter(|segment| segment.parent.is_some()) {
         let slides = |c: &usize| model.coordinates()[*c].kind == CoordinateKind::Translation;
-        let joint = segment.coordinates.clone().find(|c| !slides(c)).unwrap_or(0)..segment.coordinates.end;
+        let joint = segment.coordinates.clone().find(|c| !slides(c)).unwrap_or(segment.coordinates.end)
+            ..segment.coordinates.end;
         let turns = model.coordinates()[joint.clone()].iter().all(|c| c.kind == CoordinateKind::Rotation);
         if joint.len() != 3 || !turns {
             continue;

@@ -119,8 +119,8 @@ impl Task {
     }
 
     /// The kind and the segments that it moves, e.g. `point hand_r`; `head upright` for a direction of the head against gravity, `head
-    /// level` for one that has to be square to another, `humerus_l hangs` for one that has to point down, `humerus_l rhythm` for a height above another segment. The task must have passed
-    /// [`Task::check`].
+    /// level` for one that has to be square to another, `humerus_l hangs` for one that has to point down, `humerus_l rhythm` for a height
+    /// above another segment. The task must have passed [`Task::check`].
     pub fn label(&self, model: &Model) -> String {
         let name = |segment: usize| &model.segments()[segment].name;
         let kind = self.kind();
