@@ -57,6 +57,7 @@ mod rigs;
 mod robots;
 mod scaling;
 mod scenario;
+mod shoulder_rhythm;
 mod soles;
 mod springs;
 mod standing;
