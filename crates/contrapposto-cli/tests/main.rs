@@ -32,6 +32,8 @@ mod own_export;
 mod phone;
 mod population;
 mod pose;
+#[cfg(target_os = "linux")]
+mod power_loss;
 mod readme;
 mod relax;
 mod relax_muscles;

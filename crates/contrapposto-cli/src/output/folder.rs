@@ -104,7 +104,7 @@ impl Folder {
         for (file, path) in ready {
             file.persist(&path).map_err(|error| Fail::job(path.display(), error.error))?;
         }
-        self.sync();
+        sync_names(&self.path);
         if self.cleaned.replace(true) {
             return Ok(());
         }
@@ -140,11 +140,6 @@ impl Folder {
         Ok(ready)
     }
 
-    /// Puts changed names on the disk. A folder cannot be synced on every system; the files themselves are safe.
-    pub(super) fn sync(&self) {
-        let _ = File::open(&self.path).and_then(|folder| folder.sync_all());
-    }
-
     /// Removes a file of that name, if there is one.
     pub(crate) fn remove(&self, name: &str) -> Result<(), Fail> {
         let path = self.path.join(name);
@@ -175,6 +170,11 @@ impl Pending {
     pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), Fail> {
         self.file.write_all(bytes).map_err(|error| Fail::job(self.path.display(), error))
     }
+}
+
+/// Puts changed names of a folder on the disk. A folder cannot be synced on every system; the files themselves are safe.
+pub(super) fn sync_names(folder: &Path) {
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
 /// Locks a folder against other programs that put files in place, until the result is dropped; none where folders cannot be locked.

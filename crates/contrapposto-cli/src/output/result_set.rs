@@ -1,11 +1,13 @@
 //! The files of one run as a set: put in place together, named by a manifest, without a file of an older set.
 //!
 //! While names change there is no manifest, so that a reader can tell a whole set from a broken one; a program that is killed
-//! or fails in between leaves both lists of names in its temporary folder, and the next run removes what they name.
+//! or fails in between leaves both lists of names in its temporary folder, and the next run removes what they name. Names are synced
+//! between these steps, as a loss of power may undo any change that was not.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::folder::{Folder, lock_folder};
+use super::folder::{Folder, lock_folder, sync_names};
 use super::leftover::{REPLACED, leftovers};
 use super::manifest::{Entry, MANIFEST, entries, manifest_text};
 use crate::fail::Fail;
@@ -37,19 +39,25 @@ impl ResultSet {
         check(path, files.iter().map(|(name, _)| *name))?;
         std::fs::write(&new, manifest_text(files)).map_err(failed)?;
         std::fs::File::open(&new).and_then(|file| file.sync_all()).map_err(failed)?;
+        sync_names(temporary);
         self.folder.set_changing(true);
         if current.exists() {
             std::fs::rename(&current, &replaced).map_err(failed)?;
         }
+        sync_names(path);
+        let mut changed: BTreeSet<PathBuf> =
+            ready.iter().filter_map(|(_, place)| Some(place.parent()?.into())).collect();
         for (file, place) in ready {
             file.persist(&place).map_err(|error| Fail::job(place.display(), error.error))?;
         }
         let left = leftovers(path, temporary);
         let older = entries(&replaced).into_iter().flatten().chain(left.iter().flat_map(|left| left.files.clone()));
         older.filter(|entry| files.iter().all(|(name, _)| *name != entry.name)).for_each(|entry| discard(path, &entry));
+        changed.insert(path.to_owned());
+        changed.iter().for_each(|folder| sync_names(folder));
         std::fs::rename(&new, &current).map_err(failed)?;
         self.folder.set_changing(false);
-        self.folder.sync();
+        sync_names(path);
         left.into_iter().for_each(super::leftover::Leftover::remove);
         Ok(())
     }

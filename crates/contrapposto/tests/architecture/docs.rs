@@ -9,11 +9,11 @@ const NO_SUBJECT: [&str; 14] = [
     "What", "Whatever", "Which", "Why", "Who", "Whoever", "Whose", "How", "When", "Where", "It", "Its", "They", "Their",
 ];
 
-/// The Rust files of the repository: sources, tests, benches and examples of all crates, checks and fuzz targets.
+/// The Rust files of the repository: sources, tests, benches and examples of all crates, checks, fuzz targets and the tool of the mutants.
 pub(super) fn all_files() -> Vec<PathBuf> {
     let parts = ["src", "tests", "benches", "examples"];
     let of_crates = crates().into_values().flat_map(|folder| parts.map(|part| folder.join(part)));
-    let others = ["checks/src", "fuzz/src", "fuzz/targets"].map(|folder| root().join(folder));
+    let others = ["checks/src", "fuzz/src", "fuzz/targets", "mutants/src"].map(|folder| root().join(folder));
     of_crates.chain(others).filter(|folder| folder.is_dir()).flat_map(|folder| files(&folder)).collect()
 }
 
