@@ -11,9 +11,9 @@ use crate::draw::Mutant;
 use crate::rewrite::{MUTANT, TRACE, cargo, messages};
 
 /// A test that takes longer alone has no part.
-pub(crate) const LONGEST: Duration = Duration::from_secs(60);
+pub(crate) const LONGEST: Duration = Duration::from_secs(10);
 /// A mutant's run that takes this many times as long, and this much longer, hangs: the test has noticed it.
-const HANGS: (u32, Duration) = (10, Duration::from_secs(20));
+const HANGS: (u32, Duration) = (5, Duration::from_secs(10));
 /// Runs beside each other.
 const WORKERS: usize = 2;
 
