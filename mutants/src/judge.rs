@@ -14,6 +14,8 @@ use crate::rewrite::{MUTANT, TRACE, cargo, messages};
 pub(crate) const LONGEST: Duration = Duration::from_secs(10);
 /// A mutant's run that takes this many times as long, and this much longer, hangs: the test has noticed it.
 const HANGS: (u32, Duration) = (5, Duration::from_secs(10));
+/// No further test is tried after this time with one mutant.
+const MOST: Duration = Duration::from_secs(180);
 /// Runs beside each other.
 const WORKERS: usize = 2;
 
@@ -93,7 +95,11 @@ fn without_mutant(folder: &Path, mut tests: Vec<Test>) -> (Vec<Test>, Vec<String
         let trace = folder.join(format!("trace-{i}"));
         let _ = std::fs::remove_file(&trace);
         let start = Instant::now();
-        let end = run(&tests[i], (TRACE, &trace.display().to_string()), LONGEST);
+        let mut end = run(&tests[i], (TRACE, &trace.display().to_string()), LONGEST);
+        if matches!(end, End::Failed) {
+            // Notes allocate, which tests of allocation notice.
+            end = run(&tests[i], (MUTANT, "none"), LONGEST);
+        }
         let reached = std::fs::read_to_string(&trace).unwrap_or_default();
         let _ = std::fs::remove_file(&trace);
         (end, start.elapsed(), reached.lines().filter_map(|line| line.parse().ok()).collect())
@@ -121,8 +127,8 @@ enum Noticed {
 }
 
 fn noticed(tests: &[Test], number: usize) -> Noticed {
-    let mut count = 0;
-    for test in tests.iter().filter(|test| test.reached.contains(&number)) {
+    let (mut count, start) = (0, Instant::now());
+    for test in tests.iter().filter(|test| test.reached.contains(&number)).take_while(|_| start.elapsed() < MOST) {
         match run(test, (MUTANT, &number.to_string()), test.time * HANGS.0 + HANGS.1) {
             End::Passed => count += 1,
             End::Failed => return Noticed::By(test.name.clone()),

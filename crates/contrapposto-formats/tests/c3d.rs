@@ -112,6 +112,7 @@ fn frames_beyond_those_of_the_header_are_counted_by_parameters() {
         let read = read_c3d("long.c3d", &trial.bytes(), None).unwrap();
         assert_eq!(read.times.len(), 70_000, "{header:?}");
         assert_eq!(read.times[0], f64::from(start - 1) / 50.0, "{header:?}");
+        assert!(read.warnings.is_empty(), "{header:?}: {:?}", read.warnings);
         assert_eq!(read.places[69_999][0].unwrap().x, 69_999.0 * 1e-3);
     }
     // Parameters that do not agree with the header are those of another trial.

@@ -406,6 +406,25 @@ fn odd_names_and_what_programs_refuse() {
     assert_eq!(error, "segment `long`: more than six motions before the next mass; MuJoCo's bodies have six at most");
 }
 
+/// MuJoCo's body of both joints has its own frame, which the ball turns.
+#[test]
+fn a_ball_whose_segment_has_no_mass_and_a_hinge_behind_it() {
+    let light = SegmentSpec {
+        mass: 0.0,
+        center_of_mass: Vector3::zeros(),
+        inertia: Matrix3::zeros(),
+        ..segment("b", Some("a"), JointKind::Ball, vec![])
+    };
+    let model = build(vec![
+        segment("a", None, JointKind::Hinge(axis(0.0, 1.0, 0.0)), named(&["q"])),
+        light,
+        segment("c", Some("b"), JointKind::Hinge(axis(1.0, 0.0, 0.0)), named(&["h"])),
+    ]);
+    let written = write::mjcf(&model).unwrap();
+    let back = read(&written.text, Mjcf);
+    assert!(difference(&model, &back, false) < 1e-12, "{}", written.text);
+}
+
 /// Turned by its own frame, an inertia that no solid body has gets a moment below 0, which a URDF file may not hold.
 #[test]
 fn an_inertia_of_no_body_is_written_as_one_that_urdf_readers_take() {

@@ -80,7 +80,7 @@ fn relief_of_a_loaded_elbow_lasts_until_its_group_has_recovered() {
 fn in_every_sample_torques_add_up_to_zero_and_coordinates_are_in_range() {
     let (scenario, _) = loaded_elbow(4.0, 300.0);
     let mut relieved = 0;
-    run(&scenario, |sample| {
+    let summary = run(&scenario, |sample| {
         for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
             assert_eq!(sample.external[i] + sample.passive[i] + sample.active[i], 0.0);
             assert!((coordinate.range.0..=coordinate.range.1).contains(&sample.posture[i]));
@@ -90,6 +90,8 @@ fn in_every_sample_torques_add_up_to_zero_and_coordinates_are_in_range() {
     })
     .unwrap();
     assert!(relieved > 100, "{relieved}");
+    let reliefs = summary.reliefs;
+    assert!(reliefs.count > 0 && reliefs.count == reliefs.records.len() as u64, "{}", reliefs.count);
 }
 
 #[test]

@@ -153,6 +153,13 @@ fn muscles_of_every_kind_read_back_to_the_bit() {
         (opened.muscles.muscles.len(), opened.muscles.ligaments.len(), opened.muscles.paths.wrap_objects.len());
     assert_eq!((counts, opened.markers.len()), ((5, 3, 4), 1), "{:?}", opened.muscle_tally);
     assert_eq!(opened.muscles.paths.paths[2].wraps.len(), 4);
+    for (muscle, numbers) in [
+        (0, ["tendon_strain: 0.033", "fiber_strain: 0.55", "active_shape: 0.5", "passive_shape: 4.0"]),
+        (3, ["active_width: 1.3", "tendon_strain: 0.06", "without_passive: true", "max_isometric_force: 812.5"]),
+    ] {
+        let read = format!("{:?}", opened.muscles.muscles[muscle]);
+        numbers.iter().for_each(|number| assert!(read.contains(number), "{number} is not in {read}"));
+    }
     assert_eq!(assert_survives(&opened), []);
 }
 

@@ -213,6 +213,19 @@ mod tests {
     }
 
     #[test]
+    fn spread_is_that_of_the_rows_about_their_mean() {
+        let grid = Grid { start: 0.0, step: 1.0, rows: (0..36).map(|i| f64::from(i * 7 % 11)).collect(), width: 3 };
+        let sums = Sums::new(&grid);
+        for (from, to) in [(0, 12), (3, 4), (2, 9), (7, 12)] {
+            let of = |k: usize| (from..to).map(move |row| row * 3 + k).map(|i| grid.rows[i]);
+            let mean = |k: usize| of(k).sum::<f64>() / (to - from) as f64;
+            let expected: f64 = (0..3).map(|k| of(k).map(|x| (x - mean(k)).powi(2)).sum::<f64>()).sum();
+            let found = sums.spread(from, to);
+            assert!((found - expected).abs() < 1e-9, "{found} and {expected}, rows {from} to {to}");
+        }
+    }
+
+    #[test]
     fn the_bounds_of_even_and_of_uneven_cycles_are_found() {
         for rate in [30.0, 60.0, 100.0] {
             let times: Vec<f64> = (0..=(8.0 * rate) as usize).map(|i| i as f64 / rate).collect();

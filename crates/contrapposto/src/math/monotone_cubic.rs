@@ -168,3 +168,30 @@ impl MonotoneCubic {
         &self.pieces[i]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::MonotoneCubic;
+
+    /// Inside the curve, at its ends, and beyond them, where it goes on with the slope of its end.
+    #[test]
+    fn a_scaled_and_a_mirrored_curve_have_their_values_and_slopes_everywhere() {
+        let points = [(-1.0, 4.0), (0.0, 2.5), (0.5, 1.0), (2.0, -3.0)];
+        let curve = MonotoneCubic::new(&points).unwrap();
+        let (scaled, mirrored) = (curve.scaled(2.5), curve.mirrored());
+        for k in 0..=60 {
+            let x = -3.0 + 0.1 * f64::from(k);
+            let (value, slope) = curve.piece_at(x).value_and_slope(x);
+            let of_scaled = scaled.piece_at(x).value_and_slope(x);
+            let of_mirrored = mirrored.piece_at(-x).value_and_slope(-x);
+            for (found, expected) in [
+                (of_scaled.0, 2.5 * value),
+                (of_scaled.1, 2.5 * slope),
+                (of_mirrored.0, value),
+                (of_mirrored.1, -slope),
+            ] {
+                assert!((found - expected).abs() < 1e-12, "{found} instead of {expected} at {x}");
+            }
+        }
+    }
+}

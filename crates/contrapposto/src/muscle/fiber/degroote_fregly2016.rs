@@ -80,3 +80,42 @@ impl Curves for DeGrooteFregly2016 {
         (force - TENDON_FORCE, rate * force)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Curves, DeGrooteFregly2016};
+
+    /// Places that the publication and opensim-core name: no force at slack lengths, the greatest isometric force at the strains given.
+    #[test]
+    fn curves_pass_through_the_places_that_define_them() {
+        for law in [
+            DeGrooteFregly2016::default(),
+            DeGrooteFregly2016 { fiber_strain: 0.4, tendon_strain: 0.1, ..Default::default() },
+        ] {
+            for (found, expected) in [
+                (law.tendon(1.0).0, 0.0),
+                (law.tendon(1.0 + law.tendon_strain).0, 1.0),
+                (law.passive(0.2).0, 0.0),
+                (law.passive(1.0 + law.fiber_strain).0, 1.0),
+            ] {
+                assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
+            }
+            assert!((law.active(1.0).0 - 1.0).abs() < 0.01, "{}", law.active(1.0).0);
+        }
+    }
+
+    #[test]
+    fn slopes_are_central_differences() {
+        let law = DeGrooteFregly2016 { active_width: 1.2, ..Default::default() };
+        let curves: [fn(&DeGrooteFregly2016, f64) -> (f64, f64); 3] =
+            [DeGrooteFregly2016::active, DeGrooteFregly2016::passive, DeGrooteFregly2016::tendon];
+        for curve in curves {
+            for k in 0..=20 {
+                let (x, h) = (0.4 + 0.06 * f64::from(k), 1e-5);
+                let slope = (curve(&law, x + h).0 - curve(&law, x - h).0) / (2.0 * h);
+                let error = (curve(&law, x).1 - slope).abs();
+                assert!(error < 1e-7 * slope.abs().max(1.0), "at {x}: {} and {slope}", curve(&law, x).1);
+            }
+        }
+    }
+}
