@@ -34,13 +34,14 @@ enum End {
     TooLong,
 }
 
-/// Tries all mutants and prints who noticed each.
-pub(crate) fn judge(folder: &Path, mutants: &[Mutant]) -> Result<(), String> {
+/// Tries the mutants of these numbers and prints who noticed each.
+pub(crate) fn judge(folder: &Path, mutants: &[Mutant], only: &[usize]) -> Result<(), String> {
     let found = tests(folder)?;
     let (tests, left_out) = without_mutant(folder, found);
     println!("{} tests take part; left out, as they fail in the copy or take over {LONGEST:?}:", tests.len());
     left_out.iter().for_each(|name| println!("  {name}"));
-    let ends = in_turn(mutants.len(), |number| {
+    let ends = in_turn(only.len(), |i| {
+        let number = only[i];
         let end = noticed(&tests, number);
         let (kind, by) = match &end {
             Noticed::By(test) => ("noticed", format!(" by {test}")),

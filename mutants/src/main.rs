@@ -5,8 +5,8 @@
 //! 1993, "Mutation analysis using mutant schemata"), so that the copy is compiled once. A run without a mutant notes which tests reach
 //! which mutants; then each mutant is tried with the tests that reach it, the fastest first, until one fails.
 //!
-//! `mutants SEED COUNT FOLDER`: the copy is made in FOLDER, the report printed. Tests that need more than a clone, and tests that take
-//! longer than [`judge::LONGEST`] alone, have no part.
+//! `mutants SEED COUNT FOLDER [NUMBERS...]`: the copy is made in FOLDER, the report printed; with numbers of an earlier report, of these mutants
+//! only. Tests that need more than a clone, and tests that take longer than [`judge::LONGEST`] alone, have no part.
 
 mod draw;
 mod judge;
@@ -21,11 +21,17 @@ const SOURCES: [&str; 3] =
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [seed, count, folder] = &arguments[..] else { return failed("usage: mutants SEED COUNT FOLDER") };
-    let (Ok(seed), Ok(count)) = (seed.parse(), count.parse()) else {
-        return failed("SEED and COUNT are whole numbers");
+    let [seed, count, folder, only @ ..] = &arguments[..] else {
+        return failed("usage: mutants SEED COUNT FOLDER [NUMBERS...]");
     };
-    match run(seed, count, Path::new(folder)) {
+    let only: Result<Vec<usize>, _> = only.iter().map(|number| number.parse()).collect();
+    let (Ok(seed), Ok(count), Ok(only)) = (seed.parse(), count.parse(), only) else {
+        return failed("SEED, COUNT and NUMBERS are whole numbers");
+    };
+    if let Some(number) = only.iter().find(|number| **number >= count) {
+        return failed(&format!("mutant {number} is not one of {count}; the first is 0"));
+    }
+    match run((seed, count), Path::new(folder), only) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => failed(&error),
     }
@@ -36,14 +42,15 @@ fn failed(message: &str) -> ExitCode {
     ExitCode::FAILURE
 }
 
-fn run(seed: u64, count: usize, folder: &Path) -> Result<(), String> {
+fn run((seed, count): (u64, usize), folder: &Path, only: Vec<usize>) -> Result<(), String> {
     let root = output(Command::new("git").args(["rev-parse", "--show-toplevel"]))?;
     let root = Path::new(root.trim());
     copy(root, folder)?;
     let candidates = draw::candidates(root, &SOURCES)?;
     println!("{} possible changes; {count} of them by seed {seed}", candidates.len());
     let mutants = rewrite::compiled(root, folder, draw::shuffled(candidates, seed), count)?;
-    judge::judge(folder, &mutants)
+    let only = if only.is_empty() { (0..mutants.len()).collect() } else { only };
+    judge::judge(folder, &mutants, &only)
 }
 
 /// Copies the files that git knows.

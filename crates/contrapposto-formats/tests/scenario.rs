@@ -234,6 +234,9 @@ fn the_full_scenario_is_read() {
         read_scenario("crlf.toml", text.replace('\n', "\r\n").as_bytes(), None).unwrap();
         read_scenario("bom.toml", format!("\u{feff}{text}").as_bytes(), None).unwrap();
     }
+    let by_default = FULL.replacen("minimum_decrease_ratio = 0.9\n", "", 1);
+    let by_default = read_scenario("full.toml", by_default.as_bytes(), None).unwrap();
+    assert_eq!(by_default.strategy.minimum_decrease_ratio, 0.9);
 }
 
 /// Every prefix of a file is a value or a complaint.

@@ -92,6 +92,7 @@ fn in_every_sample_torques_add_up_to_zero_and_coordinates_are_in_range() {
     assert!(relieved > 100, "{relieved}");
     let reliefs = summary.reliefs;
     assert!(reliefs.count > 0 && reliefs.count == reliefs.records.len() as u64, "{}", reliefs.count);
+    assert!(reliefs.records.iter().any(|record| record.done > 1), "a way of several steps");
 }
 
 #[test]

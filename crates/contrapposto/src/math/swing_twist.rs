@@ -173,6 +173,17 @@ mod tests {
     use super::*;
     use crate::math::next_number;
 
+    /// Where the series takes over from the formula, both are right to more digits than the series leaves out.
+    #[test]
+    fn the_series_of_a_small_swing_goes_on_from_its_formula() {
+        let series = swing_over_sine(SERIES_COSINE + 1e-15);
+        let formula = swing_over_sine(SERIES_COSINE);
+        for (k, tolerance) in [1e-13, 1e-11, 2e-9].into_iter().enumerate() {
+            let error = (series[k] - formula[k]).abs();
+            assert!(error < tolerance, "derivative {k}: {} and {}", series[k], formula[k]);
+        }
+    }
+
     #[test]
     fn values_are_those_of_the_angles_with_derivatives_to_the_bit() {
         let mut state = 1;

@@ -112,3 +112,32 @@ fn powers(p: [f64; 6]) -> [f64; 6] {
 fn horner(c: &[f64; 6], u: f64) -> [f64; 2] {
     c.iter().rev().fold([0.0; 2], |[value, slope], k| [value * u + k, slope * u + value])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Curve, Knot};
+
+    #[test]
+    fn a_curve_meets_its_knots_with_their_slopes_and_goes_on_straight() {
+        let knots = [(0.5, 0.1, 0.0), (0.8, 0.6, 2.5), (1.1, 1.0, 0.2), (1.6, 0.3, -0.4)].map(|(x, y, slope)| Knot {
+            x,
+            y,
+            slope,
+        });
+        for curviness in [0.0, 0.6, 1.0] {
+            let curve = Curve::new(&knots, curviness);
+            for knot in knots {
+                let (y, slope) = curve.at(knot.x);
+                assert!((y - knot.y).abs() < 1e-12 && (slope - knot.slope).abs() < 1e-9, "{knot:?}: {y}, {slope}");
+            }
+            assert_eq!(curve.at(0.1), (0.1, 0.0));
+            assert!((curve.at(2.6).0 - (0.3 - 0.4)).abs() < 1e-12);
+            for k in 1..110 {
+                let (x, h) = (0.5 + 0.01 * f64::from(k) + 1e-3, 1e-6);
+                let slope = (curve.at(x + h).0 - curve.at(x - h).0) / (2.0 * h);
+                let error = (curve.at(x).1 - slope).abs();
+                assert!(error < 1e-4 * slope.abs().max(1.0), "at {x}: {} and {slope}", curve.at(x).1);
+            }
+        }
+    }
+}
