@@ -387,3 +387,31 @@ fn displace(iterate: &mut Iterate, problem: &EffortProblem<'_>, step: &[f64], le
         *force += length * d;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+    use rand_pcg::Pcg64Mcg;
+
+    use super::super::standing_adult::StandingAdult;
+    use super::displace;
+
+    const SEED: u64 = 36;
+
+    #[test]
+    fn no_free_coordinate_leaves_its_range_however_long_the_step() {
+        let mut at_a_limit = 0;
+        StandingAdult::new().each_posture(&mut Pcg64Mcg::new(SEED.into()), 20, |random, problem, iterate| {
+            let step: Vec<f64> = (0..problem.unknowns()).map(|_| random.random_range(-4.0..4.0)).collect();
+            let mut moved = iterate.clone();
+            displace(&mut moved, problem, &step, 1.0, &mut vec![0.0; problem.model.rates().len()]);
+            for rate in problem.free {
+                let Some(c) = problem.model.rates()[*rate].coordinate else { continue };
+                let (value, (lower, upper)) = (moved.posture.values()[c], problem.model.coordinates()[c].range);
+                assert!((lower..=upper).contains(&value), "seed {SEED}, coordinate {c}: {value}");
+                at_a_limit += u32::from(value == lower || value == upper);
+            }
+        });
+        assert!(at_a_limit > 100, "seed {SEED}: {at_a_limit}");
+    }
+}
