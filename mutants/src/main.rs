@@ -70,7 +70,7 @@ fn copy(root: &Path, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// What a command prints; its errors where it fails.
+/// The text that a command prints; its errors where it fails.
 fn output(command: &mut Command) -> Result<String, String> {
     let output = command.output().map_err(|error| format!("{command:?}: {error}"))?;
     if !output.status.success() {

@@ -173,7 +173,7 @@ mod tests {
     use super::*;
     use crate::math::next_number;
 
-    /// Where the series takes over from the formula, both are right to more digits than the series leaves out.
+    /// The series and the formula agree at the angle where one takes over, but for what the series leaves out.
     #[test]
     fn the_series_of_a_small_swing_goes_on_from_its_formula() {
         let series = swing_over_sine(SERIES_COSINE + 1e-15);
