@@ -173,12 +173,16 @@ impl MonotoneCubic {
 mod tests {
     use super::MonotoneCubic;
 
-    /// Inside the curve, at its ends, and beyond them, where it goes on with the slope of its end.
+    /// Inside the curve, at its ends, and beyond them.
     #[test]
     fn a_scaled_and_a_mirrored_curve_have_their_values_and_slopes_everywhere() {
         let points = [(-1.0, 4.0), (0.0, 2.5), (0.5, 1.0), (2.0, -3.0)];
         let curve = MonotoneCubic::new(&points).unwrap();
         let (scaled, mirrored) = (curve.scaled(2.5), curve.mirrored());
+        for piece in scaled.pieces().iter().chain(mirrored.pieces()) {
+            let slope = piece.value_and_slope(piece.end).1;
+            assert!((piece.end_slope - slope).abs() < 1e-12, "{} instead of {slope}", piece.end_slope);
+        }
         for k in 0..=60 {
             let x = -3.0 + 0.1 * f64::from(k);
             let (value, slope) = curve.piece_at(x).value_and_slope(x);
