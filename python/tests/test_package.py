@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import statistics
 import subprocess
 import sys
 import time
@@ -62,10 +63,17 @@ def test_the_program_of_the_package_carries_out_the_demo(tmp_path: Path) -> None
     assert (tmp_path / "out" / "report.html").stat().st_size > 100_000
 
 
-def test_importing_takes_less_than_50_ms_beside_numpy() -> None:
-    code = "import numpy, time; start = time.process_time(); import contrapposto; print(time.process_time() - start)"
-    times = [float(subprocess.check_output([sys.executable, "-c", code])) for _ in range(3)]
-    assert min(times) < 0.05, times
+def test_importing_costs_less_than_half_of_what_importing_numpy_costs() -> None:
+    code = """
+import time
+start = time.process_time()
+import numpy
+numpy_ready = time.process_time()
+import contrapposto
+print((time.process_time() - numpy_ready) / (numpy_ready - start))
+"""
+    ratios = [float(subprocess.check_output([sys.executable, "-c", code])) for _ in range(5)]
+    assert statistics.median(ratios) < 0.5, ratios
 
 
 def test_the_studio_of_the_package_serves_the_page_that_it_carries() -> None:

@@ -224,25 +224,32 @@ fn left(follower: &Follower, before: &Names, random: &mut Pcg64Mcg) -> BTreeSet<
     all
 }
 
-/// A run under strace into a folder that may hold the set of another one; every folder that it can leave is looked at, some are given to
-/// each of the `next` runs.
-fn loses_power(first: Option<&[&str]>, run: &[&str], next: [&[&str]; 2]) {
+/// A run under strace into a folder that may hold a file of the user and the set of another run; every folder that it can leave is looked at,
+/// some are given to each of the `next` runs.
+fn loses_power(own: Option<&str>, first: Option<&[&str]>, run: &[&str], next: [&[&str]; 2]) {
     let seed = 22;
     let random = &mut Pcg64Mcg::seed_from_u64(seed);
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().canonicalize().unwrap().join("out");
-    std::fs::create_dir(&out).unwrap();
+    let begin = || {
+        let _ = std::fs::remove_dir_all(&out);
+        std::fs::create_dir(&out).unwrap();
+        if let Some(own) = own.map(|name| out.join(name)) {
+            std::fs::create_dir_all(own.parent().unwrap()).unwrap();
+            std::fs::write(own, "of the user").unwrap();
+        }
+    };
+    begin();
     let whole_of = |arguments: &[&str]| {
         assert_eq!(contrapposto(arguments).arg("--out").arg(&out).run().code, 0);
         bytes(&out)
     };
     let expected = next.map(|arguments| {
         let found = whole_of(arguments);
-        std::fs::remove_dir_all(&out).unwrap();
-        std::fs::create_dir(&out).unwrap();
+        begin();
         found
     });
-    let old = first.map_or(BTreeMap::new(), whole_of);
+    let old = first.map_or_else(|| bytes(&out), whole_of);
     let (before, follower) = traced(run, &out);
     let new = bytes(&out);
     assert!(old != new && new.contains_key(&out.join(MANIFEST)));
@@ -302,8 +309,9 @@ fn a_loss_of_power_leaves_no_torn_file_and_no_mixed_set_with_a_manifest() {
     let [one, two, reach] = [&one, &two, &reach].map(|path| path.to_str().unwrap());
     let [one, two] = [["simulate", one], ["simulate", two]];
     let reach = ["pose", "--no-suggest", "--figures", reach];
-    loses_power(None, &reach, [&reach, &one]);
-    loses_power(Some(&one), &two, [&one, &two]);
-    // Sets of other names: files of the first go.
-    loses_power(Some(&reach), &one, [&reach, &one]);
+    loses_power(None, None, &reach, [&reach, &one]);
+    loses_power(None, Some(&one), &two, [&one, &two]);
+    // Sets of other names: files of the first go, also from a folder that stays.
+    loses_power(None, Some(&reach), &one, [&reach, &one]);
+    loses_power(Some("figures/own.txt"), Some(&reach), &one, [&reach, &one]);
 }

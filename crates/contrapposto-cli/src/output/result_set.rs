@@ -52,7 +52,10 @@ impl ResultSet {
         }
         let left = leftovers(path, temporary);
         let older = entries(&replaced).into_iter().flatten().chain(left.iter().flat_map(|left| left.files.clone()));
-        older.filter(|entry| files.iter().all(|(name, _)| *name != entry.name)).for_each(|entry| discard(path, &entry));
+        for entry in older.filter(|entry| files.iter().all(|(name, _)| *name != entry.name)) {
+            discard(path, &entry);
+            changed.extend(path.join(&entry.name).parent().map(PathBuf::from));
+        }
         changed.insert(path.to_owned());
         changed.iter().for_each(|folder| sync_names(folder));
         std::fs::rename(&new, &current).map_err(failed)?;
