@@ -47,7 +47,10 @@ pub(crate) fn random(random: &mut Random) -> String {
     let mut at = 0.0;
     for _ in 0..random.random_range(0..3) {
         at += random.random_range(0.5..2.0);
-        event(&mut text, at, random);
+        // An event past the last step, whose time is rounded to a tenth of a second, is refused.
+        if at < duration - 0.1 {
+            event(&mut text, at, random);
+        }
     }
     text
 }

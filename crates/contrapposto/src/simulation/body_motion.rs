@@ -56,6 +56,8 @@ pub(super) struct BodyMotion<'a> {
     above: usize,
     /// Level of each of the scenario's tasks.
     task_levels: Vec<usize>,
+    /// The tasks of these levels, also those that have no part while the supports in use are.
+    pub(super) goals: Vec<PriorityLevel>,
     /// By coordinate.
     slopes: Vec<Option<Slope>>,
     /// The supports are as in this posture.
@@ -89,7 +91,7 @@ impl<'a> BodyMotion<'a> {
         let supports: Vec<Support> = in_use.iter().map(|&number| stays(&scenario.supports[number])).collect();
         let limits = scenario.limits_with(in_use);
         let (above, below): (Vec<_>, Vec<_>) = (0..scenario.tasks.len()).partition(|&i| scenario.tasks[i].above_relief);
-        let level = |i: &usize| scenario.tasks[*i].goal.clone();
+        let level = |i: &usize| scenario.goal_with(&scenario.tasks[*i].goal, in_use);
         let reliefs = std::iter::repeat_n(PriorityLevel::default(), MOST_RELIEFS);
         let levels = above.iter().map(level).chain(reliefs).chain(below.iter().map(level)).collect();
         let mut task_levels = vec![0; scenario.tasks.len()];
@@ -106,6 +108,7 @@ impl<'a> BodyMotion<'a> {
             lifted: None,
             above: above.len(),
             task_levels,
+            goals: scenario.tasks.iter().map(|task| task.goal.clone()).collect(),
             slopes: vec![None; model.coordinates().len()],
             model,
             placed_at: placed_at.clone(),
@@ -118,7 +121,17 @@ impl<'a> BodyMotion<'a> {
 
     /// The levels that ask for something.
     pub(super) fn levels(&self) -> impl Iterator<Item = &PriorityLevel> {
-        self.engine.levels().iter().filter(|level| !level.tasks.is_empty() || !level.half_spaces.is_empty())
+        self.engine.levels().iter().filter(asks)
+    }
+
+    /// The levels that ask for something while the supports with these numbers are in use.
+    pub(super) fn levels_with(&self, in_use: &[usize]) -> Vec<PriorityLevel> {
+        let mut levels = self.engine.levels().to_vec();
+        for (goal, &level) in self.goals.iter().zip(&self.task_levels) {
+            levels[level] = self.scenario.goal_with(goal, in_use);
+        }
+        levels.retain(|level| asks(&level));
+        levels
     }
 
     pub(super) fn scenario(&self) -> &'a Scenario {
@@ -286,7 +299,8 @@ impl<'a> BodyMotion<'a> {
 
     pub(super) fn set_task(&mut self, task: usize, goal: &PriorityLevel) {
         self.restart_convergence();
-        self.engine.levels_mut()[self.task_levels[task]].clone_from(goal);
+        self.goals[task].clone_from(goal);
+        self.engine.levels_mut()[self.task_levels[task]] = self.scenario.goal_with(goal, &self.in_use);
     }
 
     pub(super) fn is_at_rest(&self) -> bool {
@@ -331,6 +345,11 @@ impl<'a> BodyMotion<'a> {
         }
         Contact { force: contact.force(support), share: contact.share(support), center_of_pressure, couple }
     }
+}
+
+/// Whether a level asks for something.
+fn asks(level: &&PriorityLevel) -> bool {
+    !level.tasks.is_empty() || !level.half_spaces.is_empty()
 }
 
 /// Whether effort is asked for.

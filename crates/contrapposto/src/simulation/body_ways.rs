@@ -5,7 +5,7 @@ use std::cell::Cell;
 use super::ScenarioError;
 use super::body_motion::{BodyMotion, engine, is_effort};
 use super::easiest::{
-    Budget, MOST_SLIP, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference, search,
+    Budget, MOST_SLIP, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference, is_better, search,
 };
 use super::offer::Offer;
 use super::path::{Path, Planner};
@@ -25,26 +25,13 @@ const START_MAX_STEP: f64 = 0.1;
 
 impl BodyMotion<'_> {
     /// The posture nearest to the scenario's start in which the supports hold the body and its tasks are done; what carries nothing
-    /// takes the posture of least effort that a search finds.
+    /// takes the posture of least effort that a search finds, and the whole body the local minimum near that.
     pub(super) fn start(&mut self) -> Result<Searched<Posture>, ScenarioError> {
         let scenario = self.scenario;
-        let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
-        // One engine at a time: with many tasks they are large.
-        let solve = |from: &Posture| -> Result<SolvedPosture, ScenarioError> {
-            let levels = self.levels().cloned().collect();
-            let mut nearest = engine(
-                (scenario, self.model.clone()),
-                &scenario.start,
-                (&self.supports, &self.limits),
-                levels,
-                options,
-            )?;
-            Ok(nearest.solve(from)?)
-        };
-        let mut solved = solve(&scenario.start)?;
+        let mut solved = self.solved(&scenario.start, 0)?;
         let missed = self.misses(&solved);
         if missed {
-            let other = solve(&self.without_effort()?)?;
+            let other = self.solved(&self.without_effort()?, 0)?;
             let errors: Vec<f64> = solved.levels.iter().map(|level| level.length).collect();
             if other.balance == Balance::Held && first_difference(&other.levels, &errors) < 0.0 {
                 solved = other;
@@ -61,8 +48,30 @@ impl BodyMotion<'_> {
         let work = SEARCH_BUDGET_OF_STEP * if missed { 2 } else { 1 };
         let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: !missed };
         let Searched { found, minima, work, cut } = self.easiest(&posture, &[], budget)?;
+        let (posture, steps) = self.settled(found.unwrap_or(posture))?;
         self.forget();
-        Ok(Searched { found: found.unwrap_or(posture), minima, work, cut })
+        Ok(Searched { found: posture, minima, work: work + steps, cut })
+    }
+
+    /// The local minimum of effort near a posture, all joints free, where that is worth a motion; the posture itself elsewhere. And its steps:
+    /// the search leaves the joints that move a support as they were, and with another trunk and other arms they stand otherwise.
+    fn settled(&mut self, posture: Posture) -> Result<(Posture, usize), ScenarioError> {
+        if !self.engine.levels().iter().any(is_effort) {
+            return Ok((posture, 0));
+        }
+        self.engine.evaluate(&posture)?;
+        let settled = self.solved(&posture, 1)?;
+        let better = settled.balance == Balance::Held && is_better(&settled, self.effort(), &self.errors_above_effort());
+        Ok((if better { settled.posture } else { posture }, settled.steps))
+    }
+
+    /// A solve of all levels from a posture, on the supports as the start has them; with effort, to the nearest of so many local minima. The engine
+    /// is one of its own for that time: with many tasks it is large.
+    fn solved(&self, from: &Posture, local_minima: usize) -> Result<SolvedPosture, ScenarioError> {
+        let options = Options { max_step: START_MAX_STEP, local_minima, ..Options::least_effort() };
+        let (levels, start) = (self.levels().cloned().collect(), &self.scenario.start);
+        let supports = (&self.supports[..], &self.limits[..]);
+        Ok(engine((self.scenario, self.model.clone()), start, supports, levels, options)?.solve(from)?)
     }
 
     /// The posture of least effort in which the supports hold the body, of those that a search with all joints free finds from `fallen`; `None`
@@ -140,11 +149,13 @@ impl BodyMotion<'_> {
     /// The way to `to`, with a change of a support, if any; `None` where there is none, where a law gives no numbers on it, or where
     /// `budget` of work, which becomes less, shows none.
     pub(super) fn way(&self, from: &Posture, to: &Posture, change: Option<Offer>, budget: &mut usize) -> Option<Path> {
-        let levels: Vec<PriorityLevel> = self.levels().take_while(|level| !is_effort(level)).cloned().collect();
-        // A step may leave what reliefs ask for at the old place.
-        let keeps = |level: &&PriorityLevel| change.is_none() || level.half_spaces.is_empty();
-        let levels: Vec<PriorityLevel> = levels.iter().filter(keeps).cloned().collect();
         let (numbers, supports) = self.with_change(change);
+        // On its way to a rest, and back, a limb does not hang.
+        let levels = if change.is_some() { self.levels_with(&numbers) } else { self.levels().cloned().collect() };
+        // A step may leave what reliefs ask for at the old place.
+        let keeps = |level: &PriorityLevel| change.is_none() || level.half_spaces.is_empty();
+        let levels: Vec<PriorityLevel> =
+            levels.into_iter().take_while(|level| !is_effort(level)).filter(keeps).collect();
         let planner = Planner {
             scenario: self.scenario,
             model: &self.model,
@@ -196,12 +207,9 @@ impl BodyMotion<'_> {
 
     /// Stands on the supports `in_use` as they are in `posture`: one has been put elsewhere, put down or taken off.
     pub(super) fn place_again(&mut self, posture: &Posture, in_use: &[usize]) -> Result<(), ScenarioError> {
-        let (levels, loads) = (self.engine.levels().to_vec(), self.engine.loads().to_vec());
+        let (goals, loads) = (std::mem::take(&mut self.goals), self.engine.loads().to_vec());
         *self = Self::new(self.scenario, self.model.clone(), posture, in_use)?;
-        self.engine.levels_mut().clone_from_slice(&levels);
-        self.engine.set_loads(&loads)?;
-        self.requested.clear();
-        self.write_relief_levels(&[]);
-        Ok(())
+        goals.iter().enumerate().for_each(|(task, goal)| self.set_task(task, goal));
+        Ok(self.engine.set_loads(&loads)?)
     }
 }

@@ -9,7 +9,7 @@ use crate::contact::{Support, rates_that_move};
 use crate::equilibria::{Aim, RelaxedPosture, Search, SearchError, equilibria};
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::posture_solver::{LevelError, Options};
+use crate::posture_solver::{LevelError, Options, SolvedPosture};
 use crate::statics::Load;
 use crate::tasks::{PriorityLevel, Task};
 
@@ -106,13 +106,16 @@ pub(super) fn easiest(
     scenario.locked_rates().for_each(|rate| locked[rate] = true);
     let locked: Vec<usize> = (0..locked.len()).filter(|&rate| locked[rate]).collect();
     let Searched { found, minima, work, cut } = search(scenario, now, (supports, limits), &locked, budget)?;
-    let better = |best: &RelaxedPosture| {
-        let farther = first_difference(&best.relaxed.levels, errors);
-        let easier = best.relaxed.effort < WORTH_A_MOTION * now.effort;
-        best.relaxed.slip.length() <= MOST_SLIP && (farther < -WORTH_NEARING || easier && farther <= 0.0)
-    };
-    let better = found.into_iter().next().filter(better);
-    Ok(Searched { found: better.map(|best| best.relaxed.posture), minima, work, cut })
+    let best = found.into_iter().next().map(|best| best.relaxed);
+    let better = best.filter(|best| is_better(best, now.effort, errors));
+    Ok(Searched { found: better.map(|best| best.posture), minima, work, cut })
+}
+
+/// Whether a posture is worth a motion from one with that effort and those errors of the tasks above effort.
+pub(super) fn is_better(solved: &SolvedPosture, effort: f64, errors: &[f64]) -> bool {
+    let farther = first_difference(&solved.levels, errors);
+    let easier = solved.effort < WORTH_A_MOTION * effort;
+    solved.slip.length() <= MOST_SLIP && (farther < -WORTH_NEARING || easier && farther <= 0.0)
 }
 
 /// Difference of the errors of the first task that differ by more than [`UNREACHED`], greater than 0 where it is farther; 0 where none does.

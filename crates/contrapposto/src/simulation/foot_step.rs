@@ -62,7 +62,8 @@ pub(super) fn plan_step(
     let offers = offers(body);
     for (k, &offer) in offers.iter().enumerate() {
         let Some(changed) = Changed::by(body, posture, offer, &mut left)? else { continue };
-        let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
+        let mut levels = body.levels_with(&changed.numbers);
+        levels.retain(|level| level.half_spaces.is_empty());
         let (loads, aim) = (body.loads(), Aim::Ways);
         let now = Now { model: &body.model, posture: &changed.posture, levels: &levels, loads, effort, aim };
         let locked: Vec<usize> = scenario.locked_rates().collect();
@@ -182,11 +183,9 @@ impl BodyMotion<'_> {
     /// The posture nearest to `posture` in which the patch of a rest lies in its region, the supports in use stay where they are and tasks are
     /// done as far as that allows; `None` where there is none. `left` of a budget of work becomes less.
     pub(super) fn laid(&self, posture: &Posture, rest: &Rest, left: &mut usize) -> Option<Posture> {
-        let levels: Vec<PriorityLevel> = {
-            let above = self.levels().take_while(|level| !is_effort(level));
-            above.filter(|level| level.half_spaces.is_empty()).cloned().collect()
-        };
         let (numbers, _) = self.with_change(Some(Offer { number: rest.support, kind: StepKind::PutDown }));
+        let above = self.levels_with(&numbers).into_iter().take_while(|level| !is_effort(level));
+        let levels: Vec<PriorityLevel> = above.filter(|level| level.half_spaces.is_empty()).collect();
         let planner = Planner {
             scenario: self.scenario,
             model: &self.model,

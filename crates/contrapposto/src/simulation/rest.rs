@@ -4,7 +4,7 @@ use nalgebra::{Unit, UnitVector3, Vector3};
 
 use crate::contact::{Place, Support, SupportError};
 use crate::model::{LARGEST, Model};
-use crate::tasks::{Bounds, Carried, Component, LookAt, LookAtGoal, Task, within_region};
+use crate::tasks::{Bounds, Carried, Component, LookAt, LookAtGoal, PriorityLevel, Task, within_region};
 
 /// A support that is not in use at the start. Its place is free: the region says where on its plane the patch may be put.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +62,27 @@ pub(super) fn check_rests(rests: &[Rest], supports: &[Support], model: &Model) -
         rest.check(supports, model)?;
     }
     Ok(())
+}
+
+/// The tasks of a level while the supports `in_use` are: a limb that a rest carries does not hang.
+pub(super) fn goal_with(
+    goal: &PriorityLevel,
+    (rests, supports): (&[Rest], &[Support]),
+    model: &Model,
+    in_use: &[usize],
+) -> PriorityLevel {
+    let carried = |limb: usize| {
+        let mut used = rests.iter().filter(|rest| in_use.contains(&rest.support));
+        used.any(|rest| carries(model, limb, supports[rest.support].segment))
+    };
+    let mut goal = goal.clone();
+    goal.tasks.retain(|task| !matches!(task, Task::Bounds(bounds) if task.hangs(model) && carried(bounds.segment)));
+    goal
+}
+
+/// Whether `segment` is `limb` or hangs on it.
+fn carries(model: &Model, limb: usize, segment: usize) -> bool {
+    std::iter::successors(Some(segment), |&segment| model.segments()[segment].parent).any(|above| above == limb)
 }
 
 /// The `limits` of a body while the supports `in_use` are: a hand that rests on a thing touches it.

@@ -1,7 +1,7 @@
 //! Describes an experiment: body, start, loads, strategy and thresholds, all checked before the first step.
 
 use super::Fall;
-use super::rest::{Rest, check_rests, limits_with};
+use super::rest::{Rest, check_rests, goal_with, limits_with};
 use super::setting::Setting;
 use crate::contact::{Missing, Support, SupportError};
 use crate::fatigue::Hysteresis;
@@ -234,6 +234,11 @@ impl Scenario {
     /// The inequalities above all tasks while the supports with these numbers are in use.
     pub(crate) fn limits_with(&self, in_use: &[usize]) -> Vec<Task> {
         limits_with(&self.limits, (&self.rests, &self.supports), &self.model, in_use)
+    }
+
+    /// The tasks of a level, one of [`Scenario::tasks`] or one that an event puts in its place, while the supports with these numbers are in use.
+    pub(crate) fn goal_with(&self, goal: &PriorityLevel, in_use: &[usize]) -> PriorityLevel {
+        goal_with(goal, (&self.rests, &self.supports), &self.model, in_use)
     }
 
     /// Whether the body has supports or tasks. Without them each coordinate finds relief on its own.
