@@ -165,13 +165,20 @@ pub(crate) fn utf8<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, InputErro
     })
 }
 
+/// Longest name that is compared with others, letters: the work grows with the product of two lengths.
+const MOST_COMPARED: usize = 64;
+
 /// The one of `names` that `given` was probably meant to be.
 pub fn nearest<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let length = given.chars().count();
     let tolerable = |name: &str| 1 + name.len() / 4;
+    if length > MOST_COMPARED {
+        return None;
+    }
     names
         .into_iter()
-        // The distance is at least the difference of lengths: no table of a million letters is filled in vain.
+        .filter(|name| name.len() <= 4 * MOST_COMPARED)
+        // The distance is at least the difference of lengths.
         .filter(|name| length.abs_diff(name.chars().count()) <= tolerable(name))
         .map(|name| (strsim::damerau_levenshtein(given, name), name))
         .filter(|(distance, name)| *distance <= tolerable(name))

@@ -17,7 +17,8 @@ pub struct VerdictText {
     /// Time for which the job can be done, min, one that holds with the posture of its end held on; `null`: muscles set no limit, or
     /// the job cannot be done.
     pub minutes: Option<f64>,
-    /// Least and greatest time until `who` fails, min, over published laws of fatigue and two of three people; `null` in it: never.
+    /// Least and greatest time until a group fails first (of people of mean strength that is `who`), min, over published laws of fatigue and two of
+    /// three people; `null` in it: never.
     pub minutes_range: Option<[Option<f64>; 2]>,
     /// The muscle group that is too weak or fails first; where none does, the one with the greatest load.
     pub who: Option<String>,

@@ -13,7 +13,9 @@ use contrapposto::simulation::Run;
 use contrapposto_formats::loads::external_loads;
 use contrapposto_formats::motion::{MOST_NUMBERS, MOST_TABLE_BYTES, read_table};
 use contrapposto_formats::xml::Limits;
-use contrapposto_formats::{MOST_BYTES, overlay, read_model, read_pose, read_relax, read_scenario};
+use contrapposto_formats::{
+    MOST_BYTES, Template, overlay, read_model, read_plan, read_pose, read_relax, read_scenario,
+};
 
 use crate::common::processor_time;
 
@@ -26,14 +28,15 @@ const MOST_SECONDS: f64 = 1.0;
 const MEBIBYTE: f64 = (1 << 20) as f64;
 
 /// Reads the inputs of a kind; `read` says whether an input was accepted.
-fn is_modest(kind: &str, make: impl Fn(usize) -> String, read: impl Fn(&[u8]) -> bool) {
+pub(crate) fn is_modest<I: AsRef<[u8]>>(kind: &str, make: impl Fn(usize) -> I, read: impl Fn(&[u8]) -> bool) {
     let count = std::env::var("CONTRAPPOSTO_LARGEST").map_or(INPUTS, |text| text.parse().unwrap());
     let (mut accepted, mut worst, mut largest) = (0, [0.0_f64; 2], 0);
     for i in 0..count {
         let input = make(i);
+        let input = input.as_ref();
         let before = processor_time();
         let mut is_read = false;
-        let memory = allocation_counter::measure(|| is_read = read(input.as_bytes())).bytes_max as f64;
+        let memory = allocation_counter::measure(|| is_read = read(input)).bytes_max as f64;
         let seconds = (processor_time() - before).as_secs_f64();
         let size = (input.len() as f64 / MEBIBYTE).max(1.0);
         let [memory, seconds] = [memory / size / MEBIBYTE, seconds / size];
@@ -52,7 +55,7 @@ fn is_modest(kind: &str, make: impl Fn(usize) -> String, read: impl Fn(&[u8]) ->
 }
 
 /// `piece(k)` for as many k as fit into `most` bytes and `count`.
-fn many(most: usize, count: usize, piece: impl Fn(usize) -> String) -> String {
+pub(crate) fn many(most: usize, count: usize, piece: impl Fn(usize) -> String) -> String {
     let mut text = String::new();
     for k in 0..count {
         let next = piece(k);
@@ -65,7 +68,7 @@ fn many(most: usize, count: usize, piece: impl Fn(usize) -> String) -> String {
 }
 
 /// Bytes of the elements of a model: its head, tail and joints need the rest.
-fn room() -> usize {
+pub(crate) fn room() -> usize {
     Limits::default().file_bytes - (1 << 19)
 }
 
@@ -370,6 +373,65 @@ fn scenarios_and_overlays_of_1_mib_need_at_most_64_mib_and_1_s() {
     };
     is_modest("overlay", laid, |bytes| {
         overlay("o.toml", bytes, body.clone()).inspect_err(|error| message("overlay", error)).is_ok()
+    });
+}
+
+/// A plan of 64 parameters, or of fewer with long lists or names.
+fn plan(i: usize) -> String {
+    let head = |design: &str, rows: &str| format!("base = \"a.toml\"\ndesign = \"{design}\"\n{rows}[parameters]\n");
+    let long = |k: usize| format!("{k:02}{}", "k".repeat(8_000));
+    let correlated = |k: usize| {
+        let others = (0..k).map(|other| format!("p{other} = 0.01,")).collect::<String>();
+        format!("p{k} = {{ range = [0, 1], correlate = {{ {} }} }}\n", others.trim_end_matches(','))
+    };
+    match i % 5 {
+        0 => {
+            let list = ["0,", "true,", "0.5, ", "\"\","][(i / 5) % 4];
+            // As many values as are allowed, or more.
+            let count = if i < 10 { 78_500 } else { (1 << 20) / list.len() - 99 };
+            head("random", "rows = 1000\n") + &format!("p = {{ list = [{}0] }}\n", list.repeat(count))
+        }
+        1 => toml(i / 5, &head("random", "rows = 10_000_000\n"), 64, correlated),
+        2 => toml(i / 5, &head("grid", ""), 64, |k| format!("p{k} = {{ list = [\"{}\"] }}\n", "text".repeat(3_000))),
+        3 => toml(i / 5, &head("sobol", "rows = 1000\n"), 64, |k| format!("{} = {{ range = [0, 1] }}\n", long(k))),
+        // A misspelt name among long ones.
+        _ => {
+            let last = format!("x = {{ range = [0, 1], correlate = {{ {}k = 0.1 }} }}\n", long(0));
+            toml(i / 5, &head("sobol", "rows = 1000\n"), 64, |k| match k {
+                63 => last.clone(),
+                _ => format!("{} = {{ range = [0, 1] }}\n", long(k)),
+            })
+        }
+    }
+}
+
+#[test]
+fn plans_and_their_scenarios_of_1_mib_need_at_most_64_mib_and_1_s() {
+    is_modest("plan", plan, |bytes| {
+        read_plan("p.toml", bytes).inspect_err(|error| println!("  plan refused: {error:.200}")).is_ok()
+    });
+    let keys: Vec<String> = (0..64)
+        .map(|k| match k % 4 {
+            0 => format!("load.{k}.mass_kg"),
+            1 => format!("run.key{k}"),
+            2 => format!("new{}.{}.key", k % 8, "long.".repeat(1_000).trim_end_matches('.')),
+            _ => format!("key{k}"),
+        })
+        .collect();
+    let make = |i: usize| {
+        let head = "format = 1\n[run]\nduration_s = 1\n".to_owned() + &"[[load]]\nmass_kg = 1\n".repeat(64);
+        let numbers = |number: &str| format!("{head}numbers = [{}0]\n", number.repeat(39_000));
+        match i % 5 {
+            0 => numbers(["0,", "0.5,", "true,", "\"\","][(i / 5) % 4]),
+            1 => numbers(["[],", "[0],", "{},", "{a=0},"][(i / 5) % 4]),
+            2 => toml(i / 5, &head, 78_500, |k| format!("[t{k}]\n")),
+            3 => toml(i / 5, &head, 78_500, |k| format!("k{k}=0\n")),
+            _ => toml(i / 5, &head, 900, |k| tables_of_a_job(i / 5, k)),
+        }
+    };
+    is_modest("template", make, |bytes| {
+        let template = Template::new("s.toml", bytes, keys.iter().map(String::as_str));
+        template.inspect_err(|error| println!("  template refused: {error:.200}")).is_ok()
     });
 }
 

@@ -33,6 +33,7 @@ mod idle_arms;
 mod inertia;
 mod joint_reactions;
 mod largest_inputs;
+mod largest_inputs_of_motion;
 mod least_effort;
 mod markers;
 mod mirror_images;

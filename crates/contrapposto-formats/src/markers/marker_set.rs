@@ -25,8 +25,9 @@ pub fn marker_set(file: &str, bytes: &[u8], bodies: &[String]) -> Result<Vec<Set
     };
     let mut markers: Vec<SetMarker> = vec![];
     let mut names = HashSet::new();
+    let known: HashSet<&str> = bodies.iter().map(String::as_str).collect();
     for node in set.child("objects").into_iter().flat_map(|objects| objects.children_named("Marker")) {
-        let marker = marker(&reader, node, bodies)?;
+        let marker = marker(&reader, node, (&known, bodies))?;
         if !names.insert(marker.name.clone()) {
             return Err(reader.error(node, format!("two markers are named `{}`", marker.name)));
         }
@@ -35,14 +36,19 @@ pub fn marker_set(file: &str, bytes: &[u8], bodies: &[String]) -> Result<Vec<Set
     Ok(markers)
 }
 
-fn marker(reader: &Reader<'_>, node: Node<'_>, bodies: &[String]) -> Result<SetMarker, TaskFileError> {
+/// Reads a marker. `known`: the same bodies.
+fn marker(
+    reader: &Reader<'_>,
+    node: Node<'_>,
+    (known, bodies): (&HashSet<&str>, &[String]),
+) -> Result<SetMarker, TaskFileError> {
     let name = node.attribute("name").map(str::trim).filter(|name| !name.is_empty() && !name.contains('/'));
     let Some(name) = name.map(str::to_owned) else {
         return Err(reader.error(node, "the <Marker> has no name, or one with `/`".to_owned()));
     };
     let frame = text(node, "socket_parent_frame").or_else(|| text(node, "body")).unwrap_or_default();
     let body = frame.strip_prefix("/bodyset/").unwrap_or(&frame);
-    if frame != "/ground" && body != "ground" && !bodies.iter().any(|known| known == body) {
+    if frame != "/ground" && body != "ground" && !known.contains(body) {
         let meant = nearest(body, bodies.iter().map(String::as_str));
         let meant = meant.map_or_else(String::new, |meant| format!("; did you mean `{meant}`?"));
         let body = shorten(body);

@@ -1,5 +1,7 @@
 //! Reads the tasks of marker tracking: OpenSim's IKTaskSet, alone or in the setup file of its InverseKinematicsTool.
 
+use std::collections::HashSet;
+
 use super::NamedFile;
 use crate::xml::{self, Limits, Node, Position, XmlError};
 
@@ -121,8 +123,9 @@ impl Reader<'_> {
     /// The tasks of an IKTaskSet.
     pub(super) fn tasks(&self, set: Node<'_>) -> Result<TrackingTasks, TaskFileError> {
         let mut tasks = TrackingTasks::default();
+        let mut names = HashSet::new();
         for node in set.child("objects").into_iter().flat_map(Node::children) {
-            self.task(node, &mut tasks)?;
+            self.task(node, &mut names, &mut tasks)?;
         }
         Ok(tasks)
     }
@@ -131,7 +134,13 @@ impl Reader<'_> {
         TaskFileError::Element { file: self.file.to_owned(), place: node.position(), problem }
     }
 
-    fn task(&self, node: Node<'_>, tasks: &mut TrackingTasks) -> Result<(), TaskFileError> {
+    /// Reads a task. `names`: kinds and names of those before it.
+    fn task<'a>(
+        &self,
+        node: Node<'a>,
+        names: &mut HashSet<(&'a str, &'a str)>,
+        tasks: &mut TrackingTasks,
+    ) -> Result<(), TaskFileError> {
         let kind = node.name();
         if !["IKMarkerTask", "IKCoordinateTask"].contains(&kind) {
             let problem = format!("<{kind}> is no task; IKMarkerTask and IKCoordinateTask are accepted");
@@ -141,16 +150,13 @@ impl Reader<'_> {
             return Ok(());
         }
         let name = node.attribute("name").map(str::trim).filter(|name| !name.is_empty());
-        let Some(name) = name.map(str::to_owned) else {
+        let Some(name) = name else {
             return Err(self.error(node, format!("the <{kind}> has no name")));
         };
-        let taken = match kind {
-            "IKMarkerTask" => tasks.markers.iter().any(|task| task.name == name),
-            _ => tasks.coordinates.iter().any(|task| task.name == name),
-        };
-        if taken {
+        if !names.insert((kind, name)) {
             return Err(self.error(node, format!("two tasks are named `{name}`; each may stand once")));
         }
+        let name = name.to_owned();
         // OpenSim's own default: such a task pulls at nothing.
         let given = self.number(node, "weight")?;
         let weight = given.unwrap_or(0.0);

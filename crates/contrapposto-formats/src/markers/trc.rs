@@ -64,6 +64,8 @@ impl MarkerUnit {
 
 /// Lines above the names of markers that are read (assumed: files have four).
 const MOST_HEADER_LINES: usize = 1000;
+/// Most places of markers that rows leave out, which need memory without a byte of the file (assumed).
+const MOST_LEFT_OUT: usize = 1_000_000;
 /// Axes that are turned by less agree, rad.
 const SAME_AXIS: f64 = 0.1;
 
@@ -136,7 +138,16 @@ pub fn read_trc(name: &str, bytes: &[u8], unit: Option<MarkerUnit>) -> Result<Ma
     let unit = file.unit(&header, unit)?;
     let mut warnings = vec![];
     let columns = file.names(labels, &mut warnings)?;
-    let mut rows = Rows { file: &file, columns: &columns, unit, times: vec![], places: vec![], zeros: 0, ragged: None };
+    let mut rows = Rows {
+        file: &file,
+        columns: &columns,
+        unit,
+        times: vec![],
+        places: vec![],
+        zeros: 0,
+        ragged: None,
+        left_out: 0,
+    };
     for (index, line) in lines().skip(above + 1).enumerate() {
         let is_axes = index < 2 && line.1.trim_start().starts_with(['X', 'x']);
         if !is_axes {
@@ -271,6 +282,8 @@ struct Rows<'f, 'a> {
     zeros: usize,
     /// First row with fewer cells than columns.
     ragged: Option<usize>,
+    /// Places that such rows leave out.
+    left_out: usize,
 }
 
 impl<'a> Rows<'_, 'a> {
@@ -315,6 +328,12 @@ impl<'a> Rows<'_, 'a> {
         }
         if found < needed {
             self.ragged.get_or_insert(line.0 + 1);
+            self.left_out += (needed - found).div_ceil(3);
+            if self.left_out > MOST_LEFT_OUT {
+                let message = format!("rows leave out {} places of markers", self.left_out);
+                let help = format!("{MOST_LEFT_OUT} at most are accepted; write an empty cell for each missing number");
+                return Err(file.error(line.1, message, Some(help)));
+            }
         }
         self.times.push(time);
         self.places.push(row);

@@ -5,15 +5,18 @@
 //! shortest turn, steps, and cubic splines (section C).
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
-use serde_json::Value;
 
 use super::gltf_data::{Document, GltfError};
+use super::json::Json;
 use super::{Channel, Rig, RigJoint};
 use crate::motion::{MOST_NAME_BYTES, MOST_NUMBERS};
 use crate::xml::shorten;
 
 /// Most nodes of a file (assumed: rigs with fingers and a face have some hundred).
 const MOST_NODES: usize = 10_000;
+/// Numbers of frames that a file may have beside one for each of its bytes: between keys far apart lie many frames
+/// (assumed: those of some minutes of a body).
+const MORE_NUMBERS_OF_FRAMES: usize = 3_000_000;
 /// Least and greatest time between samples, s: 240 and 10 a second (assumed).
 const SAMPLE_TIMES: (f64, f64) = (1.0 / 240.0, 0.1);
 /// Scales of a node along its axes that differ by less, as a share, are one.
@@ -67,9 +70,10 @@ fn rig(bytes: &[u8]) -> Result<Rig, GltfError> {
     let mut warnings = vec![];
     let (mut nodes, order) = nodes(&document, &mut warnings)?;
     let keys = keys(&document, nodes.len(), &mut warnings)?;
-    let joints = document.list("skins").iter().flat_map(|skin| skin["joints"].as_array().into_iter().flatten());
+    let joints = document.list("skins").iter().flat_map(|skin| skin["joints"].as_list().into_iter().flatten());
     let joints: Vec<usize> = joints.filter_map(|joint| Some(joint.as_u64()? as usize)).collect();
     let skinless = joints.is_empty();
+    drop(document);
     for first in keys.iter().map(|keys| keys.node).chain(joints) {
         let mut next = Some(first);
         while let Some(node) = next.and_then(|node| nodes.get_mut(node)).filter(|node| !node.kept) {
@@ -86,13 +90,16 @@ fn rig(bytes: &[u8]) -> Result<Rig, GltfError> {
     }
     let (start, frame_time, count) = sampling(&keys);
     let kept: Vec<usize> = order.into_iter().filter(|&node| nodes[node].kept).collect();
-    if count.saturating_mul(CHANNELS.len() * kept.len()) > MOST_NUMBERS {
-        let message = format!("{count} frames of {} joints have more than {MOST_NUMBERS} numbers", kept.len());
+    let most = bytes.len().saturating_add(MORE_NUMBERS_OF_FRAMES).min(MOST_NUMBERS);
+    let channels = CHANNELS.len() * kept.len();
+    if count.saturating_mul(channels) > most {
+        let message = format!("{count} frames of {} joints have more than {most} numbers", kept.len());
         return Err(GltfError::at("/animations/0", message, "a shorter animation is accepted"));
     }
     // A node's place in the axes of the one that carries it, in units of the scene.
     let mut scales = vec![1.0; nodes.len()];
-    let mut rig = Rig { joints: vec![], ends: vec![], frame_time, frames: vec![vec![]; count], warnings };
+    let frames = (0..count).map(|_| Vec::with_capacity(channels)).collect();
+    let mut rig = Rig { joints: vec![], ends: vec![], frame_time, frames, warnings };
     let mut index = vec![0; nodes.len()];
     for (number, &of) in kept.iter().enumerate() {
         let node = &nodes[of];
@@ -146,7 +153,7 @@ fn nodes(document: &Document<'_>, warnings: &mut Vec<String>) -> Result<(Vec<Nod
         }
         nodes.push(Node { name, parent: None, place, turn, scale: scales.mean(), kept: false });
     }
-    let children = |i: usize| list[i]["children"].as_array().into_iter().flatten().filter_map(Value::as_u64);
+    let children = |i: usize| list[i]["children"].as_list().into_iter().flatten().filter_map(Json::as_u64);
     for i in 0..list.len() {
         for child in children(i) {
             let free = nodes.get_mut(child as usize).filter(|node| node.parent.is_none());
@@ -170,14 +177,14 @@ fn nodes(document: &Document<'_>, warnings: &mut Vec<String>) -> Result<(Vec<Nod
 }
 
 /// Place, turn and scale of a node; `None` where they are no numbers.
-fn rest(node: &Value) -> Option<(Vector3<f64>, UnitQuaternion<f64>, Vector3<f64>)> {
+fn rest(node: &Json) -> Option<(Vector3<f64>, UnitQuaternion<f64>, Vector3<f64>)> {
     let numbers = |name: &str, usual: &[f64]| -> Option<Vec<f64>> {
-        let Some(list) = node[name].as_array() else { return Some(usual.to_vec()) };
-        let list: Vec<f64> = list.iter().map(Value::as_f64).collect::<Option<_>>()?;
+        let Some(list) = node[name].as_list() else { return Some(usual.to_vec()) };
+        let list: Vec<f64> = list.iter().map(Json::as_f64).collect::<Option<_>>()?;
         let in_order = list.len() == usual.len() && list.iter().all(|x| x.abs() <= contrapposto::model::LARGEST);
         in_order.then_some(list)
     };
-    if node["matrix"].is_array() {
+    if node["matrix"].as_list().is_some() {
         let m = numbers("matrix", &[0.0; 16])?;
         let columns = [0, 4, 8].map(|at| Vector3::new(m[at], m[at + 1], m[at + 2]));
         let scales = Vector3::from(columns.each_ref().map(|column| column.norm()));
@@ -212,15 +219,16 @@ fn keys(document: &Document<'_>, nodes: usize, warnings: &mut Vec<String>) -> Re
         warnings.push(format!("the file has {count} animations; the first one, `{name}`, is read"));
     }
     let (mut all, mut total) = (vec![], 0);
-    for (i, channel) in animation["channels"].as_array().into_iter().flatten().enumerate() {
+    for (i, channel) in animation["channels"].as_list().into_iter().flatten().enumerate() {
         let at = format!("/animations/0/channels/{i}");
-        let turns = match channel.pointer("/target/path").and_then(Value::as_str) {
+        let turns = match channel["target"]["path"].as_str() {
             Some("rotation") => true,
             Some("translation") => false,
             _ => continue,
         };
-        let Some(node) = channel.pointer("/target/node").and_then(Value::as_u64) else { continue };
-        let sampler = channel["sampler"].as_u64().and_then(|sampler| animation["samplers"].get(sampler as usize));
+        let Some(node) = channel["target"]["node"].as_u64() else { continue };
+        let samplers = animation["samplers"].as_list().unwrap_or_default();
+        let sampler = channel["sampler"].as_u64().and_then(|sampler| samplers.get(sampler as usize));
         let sampler = sampler.filter(|_| (node as usize) < nodes).ok_or_else(|| {
             GltfError::at(
                 &at,
@@ -245,8 +253,8 @@ fn keys(document: &Document<'_>, nodes: usize, warnings: &mut Vec<String>) -> Re
             return Err(GltfError::at(&at, message, "times that rise, and a value for each, are accepted"));
         }
         total += times.len() + values.len();
-        if total > MOST_NUMBERS {
-            let message = format!("the animation has more than {MOST_NUMBERS} numbers");
+        if total > document.most_numbers {
+            let message = format!("the animation has more than {} numbers", document.most_numbers);
             return Err(GltfError::at(&at, message, "a shorter animation is accepted"));
         }
         all.push(Keys { node: node as usize, turns, times, values, kind });

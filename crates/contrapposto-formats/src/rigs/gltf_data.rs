@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 
-use serde_json::Value;
-
+use super::json::Json;
 use crate::motion::MOST_NUMBERS;
 use crate::xml::shorten;
 
@@ -12,6 +11,8 @@ const MAGIC: &[u8; 4] = b"glTF";
 /// Kinds of chunks.
 const JSON: &[u8; 4] = b"JSON";
 const BIN: &[u8; 4] = b"BIN\0";
+/// Numbers of keys that a file may have beside one for each of its bytes: keys may share the bytes of an accessor (assumed).
+const MORE_NUMBERS_OF_KEYS: usize = 1_000_000;
 
 /// The reason for which a glTF file is no animation that can be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -32,7 +33,9 @@ impl GltfError {
 
 /// A file with its buffers.
 pub(super) struct Document<'a> {
-    pub(super) json: Value,
+    pub(super) json: Json,
+    /// Most numbers of all keys.
+    pub(super) most_numbers: usize,
     buffers: Vec<Cow<'a, [u8]>>,
 }
 
@@ -44,15 +47,15 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
 impl<'a> Document<'a> {
     pub(super) fn read(bytes: &'a [u8]) -> Result<Self, GltfError> {
         let (text, binary) = if bytes.starts_with(MAGIC) { chunks(bytes)? } else { (bytes, None) };
-        let json: Value = serde_json::from_slice(text)
+        let json: Json = serde_json::from_slice(text)
             .map_err(|error| GltfError::at("JSON", error.to_string(), "a glTF 2.0 file is accepted (.glb, .gltf)"))?;
-        let version = json.pointer("/asset/version").and_then(Value::as_str).unwrap_or_default();
+        let version = json["asset"]["version"].as_str().unwrap_or_default();
         if version.split('.').next() != Some("2") {
             let message = format!("the version is `{}`", shorten(version));
             return Err(GltfError::at("/asset/version", message, "glTF 2.0 is accepted"));
         }
-        let list = json["buffers"].as_array().map(Vec::as_slice).unwrap_or_default();
-        let buffer = |(index, buffer): (usize, &Value)| match buffer["uri"].as_str() {
+        let list = json["buffers"].as_list().unwrap_or_default();
+        let buffer = |(index, buffer): (usize, &Json)| match buffer["uri"].as_str() {
             None => Ok(Cow::Borrowed(binary.filter(|_| index == 0).unwrap_or_default())),
             Some(uri) => embedded(uri).map(Cow::Owned).ok_or_else(|| {
                 let message = format!("the buffer is in another file (`{}`)", shorten(uri));
@@ -64,16 +67,17 @@ impl<'a> Document<'a> {
             }),
         };
         let buffers = list.iter().enumerate().map(buffer).collect::<Result<_, _>>()?;
-        Ok(Self { json, buffers })
+        let most_numbers = bytes.len().saturating_add(MORE_NUMBERS_OF_KEYS).min(MOST_NUMBERS);
+        Ok(Self { json, most_numbers, buffers })
     }
 
     /// A list of the file; empty where there is none.
-    pub(super) fn list(&self, name: &str) -> &[Value] {
-        self.json[name].as_array().map(Vec::as_slice).unwrap_or_default()
+    pub(super) fn list(&self, name: &str) -> &[Json] {
+        self.json[name].as_list().unwrap_or_default()
     }
 
     /// Numbers of an accessor with `width` of them an element; `at` is the place that names it.
-    pub(super) fn numbers(&self, accessor: &Value, width: usize, at: &str) -> Result<Vec<f64>, GltfError> {
+    pub(super) fn numbers(&self, accessor: &Json, width: usize, at: &str) -> Result<Vec<f64>, GltfError> {
         let broken =
             |message: &str| GltfError::at(at, message, "an accessor whose numbers lie in its buffer is accepted");
         let index = accessor.as_u64().ok_or_else(|| broken("names no accessor"))? as usize;
@@ -87,7 +91,7 @@ impl<'a> Document<'a> {
         if !width_of.contains(&(kind, width)) {
             return Err(broken(&format!("the accessor is of type `{}`, {width} numbers are needed", shorten(kind))));
         }
-        let number = |value: &Value| value.as_u64().unwrap_or(0) as usize;
+        let number = |value: &Json| value.as_u64().unwrap_or(0) as usize;
         let (count, component) = (number(&accessor["count"]), accessor["componentType"].as_u64().unwrap_or(0));
         let view = self.list("bufferViews").get(number(&accessor["bufferView"]));
         let view = view.filter(|_| !accessor["bufferView"].is_null()).ok_or_else(|| broken("has no buffer"))?;
@@ -97,8 +101,8 @@ impl<'a> Document<'a> {
             5126 => 4,
             _ => return Err(broken(&format!("the accessor has components of type {component}"))),
         };
-        if count.saturating_mul(width) > MOST_NUMBERS {
-            return Err(broken(&format!("more than {MOST_NUMBERS} numbers")));
+        if count.saturating_mul(width) > self.most_numbers {
+            return Err(broken(&format!("more than {} numbers", self.most_numbers)));
         }
         let buffer = self.buffers.get(number(&view["buffer"])).ok_or_else(|| broken("has no buffer"))?;
         let stride = if view["byteStride"].is_null() { size * width } else { number(&view["byteStride"]) };

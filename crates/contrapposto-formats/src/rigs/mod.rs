@@ -9,6 +9,7 @@ mod bvh;
 mod fit;
 mod gltf;
 mod gltf_data;
+mod json;
 mod names;
 mod names_file;
 mod size;

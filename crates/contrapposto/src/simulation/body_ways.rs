@@ -61,7 +61,8 @@ impl BodyMotion<'_> {
         }
         self.engine.evaluate(&posture)?;
         let settled = self.solved(&posture, 1)?;
-        let better = settled.balance == Balance::Held && is_better(&settled, self.effort(), &self.errors_above_effort());
+        let better =
+            settled.balance == Balance::Held && is_better(&settled, self.effort(), &self.errors_above_effort());
         Ok((if better { settled.posture } else { posture }, settled.steps))
     }
 

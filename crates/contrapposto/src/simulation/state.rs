@@ -1,5 +1,8 @@
 //! Holds the state of a simulation: all that one step hands to the next one.
 
+use std::fmt;
+
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
 use super::Event;
@@ -32,6 +35,7 @@ pub(super) struct State {
     pub(super) effort: Option<f64>,
     /// Effort of the body when the first of the present recoveries requested relief; none where an event made it unknown.
     pub(super) effort_at_start: Option<f64>,
+    #[serde(deserialize_with = "decisions")]
     pub(super) decisions: Vec<Option<Decision>>,
     /// By coordinate.
     pub(super) requests: Vec<Request>,
@@ -96,6 +100,37 @@ pub(super) struct Following {
 /// Another goal is taken up after more than so many contrary decisions in a row. The slope that a decision extrapolates jumps where
 /// an edge of a foot begins or ends to carry weight.
 const CONTRARY_DECISIONS: u32 = 30;
+
+/// Most decisions of a snapshot (assumed: more coordinates than any body has). A text of 5 bytes stands for the memory of a whole decision.
+const MOST_DECISIONS: usize = 1 << 16;
+
+/// Reads decisions, one a coordinate.
+fn decisions<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Option<Decision>>, D::Error> {
+    struct Decisions;
+
+    impl<'de> Visitor<'de> for Decisions {
+        type Value = Vec<Option<Decision>>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a list of decisions")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut from: A) -> Result<Self::Value, A::Error> {
+            let mut all = vec![];
+            while let Some(decision) = from.next_element()? {
+                if all.len() == MOST_DECISIONS {
+                    return Err(A::Error::custom(format!(
+                        "more than {MOST_DECISIONS} decisions; one a coordinate is accepted"
+                    )));
+                }
+                all.push(decision);
+            }
+            Ok(all)
+        }
+    }
+
+    from.deserialize_seq(Decisions)
+}
 
 impl State {
     /// At the start, on so many supports.

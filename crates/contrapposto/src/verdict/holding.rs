@@ -64,10 +64,14 @@ impl GroupAtEnd<'_> {
 
 impl Findings {
     /// Takes in how long the posture of the end could be held on; `span` is the start and the end of the job, s. Of a job in which a group
-    /// fails only the least time and the most tired group.
+    /// fails only the range of the time, which is that of whichever group fails first, and the most tired group.
     pub(super) fn take_end(&mut self, groups: &[GroupAtEnd<'_>], span: (f64, f64)) {
         let later: Vec<Failure> = groups.iter().filter_map(|group| group.failure(span)).collect();
         self.least = Some(least(later.iter().chain(&self.fails)));
+        let greatest = later.iter().chain(&self.fails).map(|failure| failure.range.1).fold(f64::INFINITY, f64::min);
+        if let (Some(fails), Some(least)) = (&mut self.fails, self.least) {
+            fails.range = (least, greatest.max(fails.time));
+        }
         let most = groups.iter().max_by(|a, b| a.fatigue.total_cmp(&b.fatigue));
         let holds = self.fails.is_none();
         self.tired = most.map(|group| {

@@ -148,7 +148,8 @@ pub struct Verdict {
     /// Time for which the job can be done, s: until `who` fails; of a job that holds, with the posture of its end held on. `None` where no
     /// muscle sets a limit, and where the job cannot be done.
     pub seconds: Option<f64>,
-    /// Least and greatest time until `who` fails, s, over published laws and two of three people; infinite where it never fails.
+    /// Least and greatest time until a group fails first, s, over published laws and two of three people: of people of mean strength that is `who`;
+    /// infinite where none ever fails.
     pub range: Option<(f64, f64)>,
     /// Least time until any group fails, s, over published laws and two of three people; infinite where none ever fails. `None` where the
     /// job cannot be done, and of a fast motion.

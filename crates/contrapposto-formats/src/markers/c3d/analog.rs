@@ -24,17 +24,14 @@ impl Analog {
         let format = parameters.texts("ANALOG:FORMAT", 1).and_then(|texts| texts.into_iter().next());
         let unsigned = format.is_some_and(|format| format.eq_ignore_ascii_case("UNSIGNED"));
         let lists = |name: &str, signed: bool| -> Vec<f64> {
-            let parts = (1..=channels.div_ceil(LABELS_OF_ONE).max(1)).map(|part| part_name(name, part));
-            parts.flat_map(|part| parameters.list(&part, signed).unwrap_or_default()).collect()
+            of_parts(channels, name, |part, most| parameters.list(part, signed, most))
         };
-        let parts = (1..=channels.div_ceil(LABELS_OF_ONE).max(1)).map(|part| part_name("ANALOG:UNITS", part));
-        let units = parts.flat_map(|part| parameters.texts(&part, channels).unwrap_or_default()).collect();
         Self {
             channels,
             per_frame,
             scales: lists("ANALOG:SCALE", true),
             offsets: lists("ANALOG:OFFSET", !unsigned),
-            units,
+            units: of_parts(channels, "ANALOG:UNITS", |part, most| parameters.texts(part, most)),
             gain: parameters.number("ANALOG:GEN_SCALE").unwrap_or(1.0),
             unsigned,
         }
@@ -58,9 +55,14 @@ impl Analog {
     }
 }
 
-/// `SCALE`, `SCALE2`, ...
-fn part_name(name: &str, part: usize) -> String {
-    if part == 1 { name.to_owned() } else { format!("{name}{part}") }
+/// The values of `SCALE`, `SCALE2`, ..., one for each channel at most. `read` gives so many of a part at most.
+fn of_parts<T>(channels: usize, name: &str, read: impl Fn(&str, usize) -> Option<Vec<T>>) -> Vec<T> {
+    let mut all = vec![];
+    for part in 1..=channels.div_ceil(LABELS_OF_ONE) {
+        let part = if part == 1 { name.to_owned() } else { format!("{name}{part}") };
+        all.extend(read(&part, channels - all.len()).unwrap_or_default());
+    }
+    all
 }
 
 /// The refusal of a value.

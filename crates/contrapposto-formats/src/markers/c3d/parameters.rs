@@ -67,17 +67,17 @@ impl<'a> Parameters<'a> {
         numbers.iter().all(|number| number.is_finite()).then_some(numbers)
     }
 
-    /// All numbers of a value; those of 16 bits with a sign where `signed` is true.
-    pub(super) fn list(&self, name: &str, signed: bool) -> Option<Vec<f64>> {
+    /// Numbers of a value, `most` at most; those of 16 bits with a sign where `signed` is true.
+    pub(super) fn list(&self, name: &str, signed: bool, most: usize) -> Option<Vec<f64>> {
         let value = self.values.get(name)?;
         let word = |bytes: [u8; 2]| match (self.processor.word(bytes), signed) {
             (word, true) => f64::from(word as i16),
             (word, false) => f64::from(word),
         };
         Some(match value.kind {
-            1 => value.data.iter().map(|byte| f64::from(*byte)).collect(),
-            2 => value.data.as_chunks().0.iter().map(|bytes| word(*bytes)).collect(),
-            4 => value.data.as_chunks().0.iter().map(|bytes| self.processor.float(*bytes)).collect(),
+            1 => value.data.iter().take(most).map(|byte| f64::from(*byte)).collect(),
+            2 => value.data.as_chunks().0.iter().take(most).map(|bytes| word(*bytes)).collect(),
+            4 => value.data.as_chunks().0.iter().take(most).map(|bytes| self.processor.float(*bytes)).collect(),
             _ => return None,
         })
     }

@@ -66,6 +66,8 @@ struct Plate {
     calibration: Matrix6<f64>,
     /// Length of the unit of moments and centres of pressure, m.
     metres: f64,
+    /// Length of the unit of the couple of type 1, m.
+    metres_of_couple: f64,
 }
 
 /// Reads the force plates of a C3D file. `name` stands in errors and warnings only. Time of analog sample `k` of frame `n`, both counted from 0, is
@@ -91,19 +93,19 @@ fn force_plates(bytes: &[u8], unit: Option<MarkerUnit>) -> Result<ForcePlates, C
         let message = "the file has no force plate (FORCE_PLATFORM:USED)";
         return Err(C3dError::at(byte, message, "a file with force plates is accepted"));
     }
-    let numbers = frames.len() / layout.frame * analog.per_frame * 6 * count;
-    if count > MOST_PLATES || numbers > MOST_NUMBERS {
-        let message = format!("{count} force plates with {numbers} numbers");
-        return Err(C3dError::at(
-            byte,
-            message,
-            format!("{MOST_PLATES} plates and {MOST_NUMBERS} numbers are accepted"),
-        ));
+    let samples = frames.len() / layout.frame * analog.per_frame;
+    let numbers = samples.saturating_mul(count).saturating_mul(6);
+    let most = MOST_PLATES.min(analog.channels);
+    if count > most || numbers > MOST_NUMBERS {
+        let message = format!("{count} force plates with {} channels and {numbers} numbers", analog.channels);
+        let accepted =
+            format!("{most} plates, no more than there are channels, and {MOST_NUMBERS} numbers are accepted");
+        return Err(C3dError::at(byte, message, accepted));
     }
     let plates: Vec<Plate> =
         (0..count).map(|i| Plate::new(&parameters, &layout, &analog, i)).collect::<Result<_, _>>()?;
-    let mut found: Vec<ForcePlate> = plates.iter().map(Plate::empty).collect();
-    let mut times = vec![];
+    let mut found: Vec<ForcePlate> = plates.iter().map(|plate| plate.empty(samples)).collect();
+    let mut times = Vec::with_capacity(samples);
     for (number, frame) in frames.chunks_exact(layout.frame).enumerate() {
         for sample in 0..analog.per_frame {
             let share = sample as f64 / analog.per_frame as f64;
@@ -149,7 +151,7 @@ impl Plate {
     fn new(parameters: &Parameters<'_>, layout: &Layout, analog: &Analog, i: usize) -> Result<Self, C3dError> {
         let named = |name: &str| format!("FORCE_PLATFORM:{name}");
         let numbers = |name: &str, count: usize| -> Result<Vec<f64>, C3dError> {
-            let all = parameters.list(&named(name), true).unwrap_or_default();
+            let all = parameters.list(&named(name), true, count * (i + 1)).unwrap_or_default();
             let own = all.get(count * i..count * (i + 1)).filter(|own| own.iter().all(|value| value.is_finite()));
             own.map(<[f64]>::to_vec).ok_or_else(|| {
                 let message = format!("FORCE_PLATFORM:{name} holds no {count} numbers of plate {}", i + 1);
@@ -185,15 +187,22 @@ impl Plate {
             (1, "mm") | (2, "nmm" | "ntmm") => 1e-3,
             _ => unit,
         };
-        Ok(Self { kind, channels, axes, corners, origin, calibration, metres })
+        let metres_of_couple = match analog.unit(channels[5]).as_str() {
+            "nm" | "ntm" => 1.0,
+            "nmm" | "ntmm" => 1e-3,
+            _ => unit,
+        };
+        Ok(Self { kind, channels, axes, corners, origin, calibration, metres, metres_of_couple })
     }
 
-    fn empty(&self) -> ForcePlate {
+    /// The plate without forces, with room for those of so many samples.
+    fn empty(&self, samples: usize) -> ForcePlate {
         let center = self.corners.iter().sum::<Vector3<f64>>() / 4.0;
         let normal = self.axes.column(2).into_owned();
         // Laboratories count upwards along the axis that is nearest to the normal.
         let up = normal * normal[normal.iamax()].signum();
-        ForcePlate { corners: self.corners, up, center, forces: vec![], moments: vec![] }
+        let [forces, moments] = [(); 2].map(|()| Vec::with_capacity(samples));
+        ForcePlate { corners: self.corners, up, center, forces, moments }
     }
 
     /// Force (N) and moment about the middle of the surface (N m) of a sample, in the axes of the laboratory.
@@ -214,7 +223,7 @@ impl Plate {
             1 => {
                 let force = Vector3::new(c[0], c[1], c[2]);
                 let at = self.metres * Vector3::new(c[3], c[4], 0.0);
-                (force, at.cross(&force) + Vector3::new(0.0, 0.0, self.metres_of_couple(analog, layout) * c[5]))
+                (force, at.cross(&force) + Vector3::new(0.0, 0.0, self.metres_of_couple * c[5]))
             }
             3 => {
                 let [a, b, depth] = [self.origin.x, self.origin.y, self.origin.z];
@@ -234,21 +243,13 @@ impl Plate {
         };
         Ok((self.axes * force, self.axes * moment))
     }
-
-    /// Length of the unit of the couple of type 1, m.
-    fn metres_of_couple(&self, analog: &Analog, layout: &Layout) -> f64 {
-        match analog.unit(self.channels[5]).as_str() {
-            "nm" | "ntm" => 1.0,
-            "nmm" | "ntmm" => 1e-3,
-            _ => layout.unit(),
-        }
-    }
 }
 
 /// Numbers of the first channels of a plate, from 0.
 fn channels(parameters: &Parameters<'_>, analog: &Analog, (i, count): (usize, usize)) -> Result<Vec<usize>, C3dError> {
     const NAME: &str = "FORCE_PLATFORM:CHANNEL";
-    let (all, width) = (parameters.list(NAME, false).unwrap_or_default(), parameters.first_dimension(NAME));
+    let width = parameters.first_dimension(NAME);
+    let all = parameters.list(NAME, false, width * (i + 1)).unwrap_or_default();
     let own = all.get(width * i..width * (i + 1)).and_then(|own| own.get(..count));
     let known = |own: &&[f64]| own.iter().all(|channel| (1.0..=analog.channels as f64).contains(channel));
     own.filter(known).map(|own| own.iter().map(|channel| *channel as usize - 1).collect()).ok_or_else(|| {

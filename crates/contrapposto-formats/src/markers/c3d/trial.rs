@@ -54,7 +54,7 @@ pub(super) fn read_unit(parameters: &Parameters<'_>, given: Option<MarkerUnit>) 
 
 /// The axis of the laboratory that points up: along the normal of the first force plate, or else that which is drawn upwards on a screen.
 pub(super) fn up(parameters: &Parameters<'_>) -> Option<Vector3<f64>> {
-    let corners = parameters.list("FORCE_PLATFORM:CORNERS", true).unwrap_or_default();
+    let corners = parameters.list("FORCE_PLATFORM:CORNERS", true, 12).unwrap_or_default();
     let plates = parameters.number("FORCE_PLATFORM:USED").is_some_and(|count| count > 0.0);
     let corner = |at: usize| Vector3::from_column_slice(&corners[at..at + 3]);
     let corners = (plates && corners.len() >= 12).then(|| [0, 3, 6, 9].map(corner));
