@@ -194,4 +194,37 @@ mod tests {
         // A goal that moves away is followed beyond its first value.
         assert_eq!(sentence_of(110.0, 0, 5), way("110.0") + "; " + worse);
     }
+
+    #[test]
+    fn a_relief_by_another_joint_says_which_way_that_moves() {
+        let model = adult(&Adult::default()).unwrap();
+        let [elbow, arm] = ["elbow_flex_r", "arm_flex_r"].map(|name| model.coordinate(name).unwrap());
+        let sentence = |direction: Side| {
+            let record = ReliefRecord {
+                coordinate: elbow,
+                side: Side::Positive,
+                fatigue: 0.5,
+                strategy: Strategy::Active,
+                attempt: Attempt::OtherJoint { coordinate: arm, direction },
+                decision: None,
+                time: (0.0, 4.0),
+                value: (0.1, 0.1),
+                active: (12.0, 8.0),
+                predicted: 0.0,
+                actual: -4.0,
+                done: 10,
+                deferred: 0,
+                taken_back: 0,
+                idle: 0,
+            };
+            relief_sentence(&model, &record)
+        };
+        let expected = |way: &str| {
+            format!(
+                "elbow_flex_r, elbow flexion, tired to 0.50, is unloaded by arm_flex_r, which moves {way}: active torque from 12.0 to 8.0 N m"
+            )
+        };
+        assert_eq!(sentence(Side::Positive), expected("up"));
+        assert_eq!(sentence(Side::Negative), expected("down"));
+    }
 }

@@ -39,3 +39,14 @@ fn is_obeyed(c: char) -> bool {
 pub(crate) fn turns_direction(c: char) -> bool {
     matches!(c, '\u{200e}' | '\u{200f}' | '\u{061c}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
+
+#[cfg(test)]
+mod tests {
+    use super::escaped_lines;
+
+    #[test]
+    fn line_ends_stay_and_all_else_that_a_terminal_obeys_is_written_out() {
+        assert_eq!(escaped_lines("a\u{202e}b\n\tc\r\n\u{1b}[1m\n"), "a\\u202eb\n\tc\\u000d\n\\u001b[1m\n");
+        assert_eq!(escaped_lines(""), "");
+    }
+}

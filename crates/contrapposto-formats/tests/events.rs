@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use contrapposto::contact::Slip;
+use contrapposto::hybrid::Strategy;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Fall, Run, Sample, Scenario, StopReason, Summary};
 use contrapposto_formats::read_scenario;
@@ -165,4 +166,22 @@ fn what_is_put_down_is_there_until_its_event() {
     assert_eq!(until(held, put_down), [None], "its place stays");
     let thing = &job(bag, put_down)[0];
     assert!(thing.is_there(19.9) && !thing.is_there(20.0) && !thing.is_there(25.0));
+}
+
+/// Either key alone changes strategies.
+#[test]
+fn an_event_changes_the_strategies_that_it_names() {
+    let strategies = |change: &str| {
+        let text = with("stand-relaxed.toml", 15.0, &format!("[[event]]\nat_s = 5\n{change}\n"));
+        let scenario = scenario(&text.replace("kind = \"passive\"", "kind = \"active\""));
+        let passive = scenario.events[0].strategies.clone().unwrap().into_iter().map(|s| s == Strategy::Passive);
+        let passive: Vec<bool> = passive.collect();
+        let knee = passive[at(&scenario.model, "knee_angle_r")];
+        (passive.iter().filter(|one| **one).count(), knee, passive.len())
+    };
+    let (passive, knee, all) = strategies("strategy = \"passive\"");
+    assert!(passive == all && knee, "{passive} of {all}");
+    assert_eq!(strategies("strategy_of = { knee_angle_r = \"passive\" }").0, 1);
+    let but_one = strategies("strategy = \"passive\"\nstrategy_of = { knee_angle_r = \"active\" }");
+    assert_eq!(but_one, (all - 1, false, all));
 }

@@ -257,3 +257,16 @@ fn mutated_files_are_read_or_refused() {
     println!("{read} read, {refused} refused");
     assert!(read > 200 && refused > 200, "{read} {refused}");
 }
+
+#[test]
+fn a_scale_that_is_not_the_same_along_its_axes_is_told_with_the_name_of_its_node() {
+    let warnings = |scale: [f64; 3]| {
+        let mut file = two_bones("LINEAR", &[NONE, QUARTER].concat(), "LINEAR", &[0.0; 6]);
+        file["nodes"][0]["scale"] = json!(scale);
+        let warnings = read_gltf("a.gltf", file.to_string().as_bytes()).unwrap().warnings;
+        warnings.into_iter().filter(|warning| warning.contains("not the same along its axes")).collect::<Vec<_>>()
+    };
+    assert!(warnings([0.01, 0.01, 0.01]).is_empty() && warnings([0.01, 0.01, 0.010_000_1]).is_empty());
+    let told = warnings([0.01, 0.02, 0.01]);
+    assert!(told.len() == 1 && told[0].contains("`Armature`"), "{told:?}");
+}

@@ -6,10 +6,12 @@ use crate::common::shared;
 use std::time::Instant;
 
 use contrapposto::joint_torques::{JointMuscles, JointTorques, Quantities, active_torque, relative_load};
+use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Side};
 use contrapposto::passive::PassiveLaw;
 use contrapposto::posture::Posture;
 use contrapposto::simulation::{Run, Scenario};
+use contrapposto_formats::read_pose;
 use contrapposto_formats::tissue::MuscleUse;
 use muscled_arm::{arm, opened, scenario};
 
@@ -180,4 +182,29 @@ fn a_crouch_on_the_muscles_of_gait2392_is_judged_by_them_ten_times_faster_than_i
     let (took, lasts) = (start.elapsed().as_secs_f64(), run.summary().end_time);
     println!("{samples} samples, loads differ by {worst:.1e}; {lasts} s in {took:.2} s");
     assert!(took < 0.1 * lasts, "{lasts} s took {took} s");
+}
+
+#[test]
+fn a_pose_has_the_strength_that_its_muscles_have_where_it_starts() {
+    let bytes = arm();
+    let [mut body, library] = opened(bytes.as_bytes(), MuscleUse::Strength);
+    let (muscles, _) = body.scenario_muscles(&library).unwrap();
+    let mut posed = body.model.clone();
+    let elbow = posed.coordinate("elbow_flex_r").unwrap();
+    let text = "format = 1\n[model]\nfile = \"arm.osim\"\nmuscles = \"strength\"\n[posture]\nelbow_flex_r_deg = 100\n[[task]]\nkind = \"posture\"\n";
+    let mut pose = read_pose("pose.toml", text.as_bytes(), Some(body.model)).unwrap();
+    let peaks =
+        |model: &Model| model.coordinates()[elbow].groups.as_ref().unwrap().each_ref().map(|group| group.strength.peak);
+    let before = peaks(&pose.model);
+    pose.take_muscles(muscles);
+    let [mut body, library] = opened(bytes.as_bytes(), MuscleUse::Strength);
+    let mut alone = body.joint_muscles(&library).0.unwrap();
+    let mut kinematics = Kinematics::new(&posed);
+    kinematics.update(&posed, &pose.start).unwrap();
+    alone.update(&posed, &pose.start, &kinematics).unwrap();
+    alone.write_strength(&mut posed);
+    assert!(pose.muscles.is_some());
+    for ((peak, expected), before) in peaks(&pose.model).into_iter().zip(peaks(&posed)).zip(before) {
+        assert!((peak - expected).abs() < 1e-9 * expected && (peak - before).abs() > 1.0, "{peak} {expected} {before}");
+    }
 }

@@ -298,3 +298,10 @@ fn groups_of_gait2392_have_the_fatigue_of_the_strength_that_its_muscles_have_lef
     let [weaker, mean, stronger] = muscles.failures.map(|failure| failure.unwrap().time);
     assert!(weaker < mean && mean < stronger, "{weaker} {mean} {stronger}");
 }
+
+#[test]
+fn muscles_that_tire_are_counted_and_others_are_not() {
+    let arm = arm();
+    let count = |more: &str| scenario(arm.as_bytes(), &held(5.0, more), MuscleUse::Strength).0.tiring_muscles();
+    assert_eq!((count(""), count("[fatigue]\nby = \"joint\"")), (2, 0));
+}

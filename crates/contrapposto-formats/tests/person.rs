@@ -74,3 +74,21 @@ fn nobody_of_an_impossible_size_is_taken() {
         assert!(error.contains(problem) && error.contains("female,1.65m,60kg"), "{error}");
     }
 }
+
+#[test]
+fn a_file_of_the_built_in_adult_is_that_adult_again() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/models/adult-female.osim");
+    let bytes = std::fs::read(path).unwrap();
+    let file = SourcedModel::read("body.osim", &bytes, None, &mut |_: &str| Err("none".to_owned())).unwrap();
+    assert!(file.is_exported_adult() && !filled(&Person::default()).is_exported_adult());
+    let body = file.fill(&Person::default()).unwrap();
+    let own = adult(&Adult::of(&body.model).unwrap()).unwrap();
+    assert_eq!((Adult::of(&own).unwrap().sex, body.sex), (Sex::Female, Some(Sex::Female)));
+    close(knee(&body.model), knee(&own));
+    for segment in own.segments() {
+        let there = &body.model.segments()[body.model.segment(&segment.name).unwrap()];
+        assert_eq!(there.patch.len(), segment.patch.len(), "{}", segment.name);
+    }
+    assert_eq!(body.model.three_axis_joints().len(), own.three_axis_joints().len());
+    assert!(body.notes.iter().any(|note| note.contains("is the built-in adult, a woman")), "{:?}", body.notes);
+}

@@ -410,3 +410,39 @@ fn mutated_files_give_finite_points_or_a_refusal() {
     println!("{answered} answered, {refused} refused");
     assert!(answered > 100 && refused > 100, "{answered}, {refused}");
 }
+
+/// The direction of the toes of a rig that stands is that of the adult's feet, up to 60 degrees outwards.
+#[test]
+fn feet_that_point_outwards_in_the_rest_pose_point_there_in_the_body() {
+    let plain = RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0, bent: 0.0 }.text(&[]);
+    for (turned, expected) in [(0.0, 0.0), (20.0, 20.0), (-10.0, -10.0), (75.0, 0.0)] {
+        // Left, up, ahead in cm; the ends of the toes turn with them.
+        let (sin, cos) = libm::sincos(f64::to_radians(turned));
+        let mut text = plain.clone();
+        for (word, side) in [("Left", 1.0), ("Right", -1.0)] {
+            let head = text.find(&format!("{word}ToeBase\n")).unwrap();
+            let (before, after) = text.split_at(head);
+            let line = |ahead: f64, up: &str| format!("OFFSET {} {up} {}", side * ahead * sin, ahead * cos);
+            let after =
+                after.replacen("OFFSET 0 -5 13", &line(13.0, "-5"), 1).replacen("OFFSET 0 0 6", &line(6.0, "0"), 1);
+            assert!(turned == 0.0 || after.contains(&line(13.0, "-5")) && after.contains(&line(6.0, "0")), "{after}");
+            text = format!("{before}{after}");
+        }
+        let rig = read_bvh("a.bvh", text.as_bytes()).unwrap();
+        let assignment = Assignment::find(&rig, &BTreeMap::new()).unwrap();
+        let fitted = Fitted::new(&rig, &assignment, &Sizing::ToRig(Sex::Male), None).unwrap();
+        let targets = Targets::new(&rig, &assignment, &fitted, &[0]);
+        let places = targets.places(0);
+        for (name, side) in [("calcn_r", 1.0), ("calcn_l", -1.0)] {
+            let foot = fitted.model.segment(name).unwrap();
+            let of = targets.goals.markers.iter().zip(&places).filter(|(marker, _)| marker.segment == foot);
+            let [(middle, at), (ahead, there)] = [0.0, 0.1].map(|x| {
+                let found = of.clone().find(|(marker, _)| (marker.point - Vector3::x() * x).norm() < 1e-12);
+                found.map(|(marker, place)| (marker.point, place.unwrap())).unwrap()
+            });
+            let way = (there - at) / (ahead - middle).norm();
+            let outwards = libm::atan2(side * way.z, way.x).to_degrees();
+            assert!((outwards - expected).abs() < 0.01 && way.y.abs() < 1e-6, "{name}: {outwards} for {turned}");
+        }
+    }
+}

@@ -178,3 +178,11 @@ fn older_documents_and_setup_files_of_other_tools_are_refused_by_name() {
     let zero = scale_setup("s.xml", zero.as_bytes()).unwrap_err().to_string();
     assert!(zero.contains("the factor of `thigh` is 0; 0.01 to 100 is accepted"), "{zero}");
 }
+
+#[test]
+fn what_is_not_scaled_is_counted_by_its_kind() {
+    let geometry = "<ContactGeometrySet><objects><ContactHalfSpace name=\"floor\"/><ContactSphere name=\"heel\"/></objects></ContactGeometrySet>";
+    let text = LEG.replace("<MarkerSet>", &format!("{geometry}<MarkerSet>"));
+    let scaling = Scaling { factors: all(Vector3::repeat(1.1)), ..Scaling::default() };
+    assert_eq!(scaled(&text, "leg.osim", &scaling).unwrap().left, BTreeMap::from([("contact geometries", 2)]));
+}

@@ -289,3 +289,17 @@ fn things_are_drawn_where_they_carry_and_where_they_are_held() {
     near(bag[1] - bag[0], 0.26);
     near(strap[0], bag[1]);
 }
+
+/// The start that a posture does not give: straight knees for hands above the hips, bent ones for hands below them.
+#[test]
+fn knees_begin_the_more_bent_the_deeper_a_box_is() {
+    let knee = |height: f64| {
+        let text = format!("[[box]]\nmass_kg = 1\nsize_m = [0.3, 0.2, 0.4]\nat_m = [0.4, {height}, 0]\n");
+        let named = read(&text);
+        named.start.values()[named.model.coordinate("knee_angle_r").unwrap()].to_degrees()
+    };
+    let [high, middle, low, floor] = [1.2, 0.7, 0.5, 0.3].map(knee);
+    println!("{high:.1} {middle:.1} {low:.1} {floor:.1}");
+    assert!(high.abs() < 5.0, "{high}");
+    assert!(middle > high + 5.0 && low > middle + 5.0 && floor > low + 2.0, "{high} {middle} {low} {floor}");
+}

@@ -85,3 +85,22 @@ fn a_solve_out_of_reach_ends_no_farther_than_its_first_start() {
         assert!(gain > -1e-4, "seed {SEED}, {target:?}: {gain} m");
     }
 }
+
+/// Nothing but the hand's distance: steps that take the error as straight overshoot for ever, by the longest step that is allowed.
+#[test]
+fn steps_toward_a_target_out_of_reach_become_short_where_it_is_the_only_level() {
+    let model = adult(&Adult::default()).unwrap();
+    let hand = model.segment("hand_r").unwrap();
+    for target in TARGETS {
+        let task = Point { segment: hand, point: Vector3::zeros(), target: target.into(), axes: [true; 3] };
+        let options = Options::inverse_kinematics();
+        let mut engine = Engine::new(&model, vec![Task::Point(task).into()], &[], options).unwrap();
+        let root = ["pelvis_tx", "pelvis_ty", "pelvis_tz", "pelvis_tilt", "pelvis_list", "pelvis_rotation"];
+        root.iter().for_each(|name| engine.lock(model.coordinates()[model.coordinate(name).unwrap()].rate.unwrap()));
+        let mut posture = model.default_posture();
+        let steps: Vec<f64> = (0..120).map(|_| engine.step(&mut posture).unwrap().largest).collect();
+        let longest = steps[60..].iter().copied().fold(0.0, f64::max);
+        println!("{target:?}: {:.3} rad at first, {longest:.1e} at most in the end", steps[0]);
+        assert!(steps[0] > 0.5 && longest < 0.02, "{target:?}: {longest}");
+    }
+}

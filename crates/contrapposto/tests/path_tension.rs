@@ -465,3 +465,28 @@ fn tables_of_laws_are_the_torques_of_the_muscles_along_the_joint() {
     println!("{compared} of 25 rows are exact; levelled {rise:?}");
     assert!(compared >= 12 && rise.span > 1.0, "{compared} {rise:?}");
 }
+
+/// The laws near the posture before are not those of the next one: the change is told as a share of the weaker group's strength.
+#[test]
+fn a_posture_tells_by_how_much_the_torque_of_the_laws_changes() {
+    let mut rng = random();
+    let (mut model, mut muscles, coordinates) = with_laws(1.0);
+    let first = inside_about_axes(&mut rng, &model);
+    muscles.pose(&mut model, &first).unwrap();
+    let mut greatest = 0f64;
+    for _ in 0..12 {
+        let posture = inside_about_axes(&mut rng, &model);
+        let [before, exact] = by_law_and_by_muscles(&model, &mut muscles, &coordinates, &posture);
+        let share = |(i, (before, exact)): (&usize, (f64, f64))| {
+            let groups = model.coordinates()[*i].groups.as_ref().unwrap();
+            let weaker = groups[0].strength.peak.min(groups[1].strength.peak);
+            (before - exact).abs() / weaker.max(1.0)
+        };
+        let expected = coordinates.iter().zip(before.into_iter().zip(exact)).map(share).fold(0.0, f64::max);
+        let change = muscles.pose(&mut model, &posture).unwrap();
+        assert!((change - expected).abs() < 1e-9 * (1.0 + expected), "{change} for {expected}");
+        greatest = greatest.max(expected);
+    }
+    println!("up to {greatest:.2} of the strength");
+    assert!(greatest > 0.01, "{greatest}");
+}

@@ -14,7 +14,9 @@ use contrapposto::tasks::{self, CenterOfMass, Effort, Orientation, Point, Task};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use contrapposto::equilibria::{Aim, Equilibria, Mirror, SCATTERED_STARTS, Search, SearchError, equilibria};
+use contrapposto::equilibria::{
+    Aim, Equilibria, Mirror, SCATTERED_STARTS, Search, SearchError, equilibria, equilibria_watched,
+};
 use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::Load;
 use nalgebra::{Matrix3, Vector3};
@@ -467,4 +469,32 @@ fn a_limb_that_hangs_in_the_start_hangs_in_every_answer_and_one_that_is_upright_
         assert!(places.iter().all(|place| place.abs() > 0.999), "{places:?}");
         assert_eq!(places.iter().any(|place| *place > 0.0), stays_upright, "{places:?}");
     }
+}
+
+/// Local minima of an earlier search stand in for starts that are scattered.
+#[test]
+fn a_search_that_is_told_earlier_minima_scatters_no_starts_and_finds_the_same() {
+    let (model, start) = (link(-1.0), Posture::new(vec![1.0]));
+    let found = |known: &[Posture]| {
+        let search = Search {
+            model: &model,
+            start: &start,
+            supports: &[],
+            limits: &[],
+            goals: &[],
+            loads: &[],
+            locked: &[],
+            most_work: usize::MAX,
+            scattered: 40,
+            aim: Aim::Least(known),
+            threads: 1,
+        };
+        let mut sought = 0;
+        (equilibria_watched(&search, OPTIONS, &mut |count| sought = count).unwrap(), sought)
+    };
+    let (first, all) = found(&[]);
+    let (again, fewer) = found(&first.minima);
+    println!("{all} postures sought, then {fewer}");
+    assert!(all > 40 && fewer < 20, "{all} {fewer}");
+    assert!((again.postures[0].relaxed.effort - first.postures[0].relaxed.effort).abs() < 1e-9);
 }

@@ -157,3 +157,22 @@ fn sweep(directions: &[Vector3<f64>]) -> Vec<usize> {
     });
     order
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Neighbours are 0.14 rad apart.
+    #[test]
+    fn a_sweep_goes_through_all_directions_from_neighbour_to_neighbour() {
+        let (directions, _) = directions();
+        let order = sweep(&directions);
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        assert!(sorted.into_iter().eq(0..directions.len()));
+        let steps: Vec<f64> = order.windows(2).map(|pair| directions[pair[0]].angle(&directions[pair[1]])).collect();
+        let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+        println!("steps of {mean:.3} rad on average, {:.3} at most", steps.iter().copied().fold(0.0, f64::max));
+        assert!(mean < 0.2, "{mean}");
+    }
+}

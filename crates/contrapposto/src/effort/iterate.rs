@@ -209,6 +209,7 @@ mod tests {
     use rand::RngExt;
     use rand_pcg::Pcg64Mcg;
 
+    use super::super::qp::QuadraticProgram;
     use super::super::standing_adult::{StandingAdult, displaced, same_groups};
 
     const SEED: u64 = 29;
@@ -250,5 +251,18 @@ mod tests {
         });
         println!("seed {SEED}: {compared} motions, off by {:.1e} at most, by forces alone {:.1e}", worst[0], worst[1]);
         assert!(compared > 60 && worst[0] < 1e-6 && worst[1] < 1e-8, "{worst:?} {compared}");
+    }
+
+    #[test]
+    fn the_size_of_a_program_is_the_largest_sum_of_squares_of_a_column_of_the_jacobian_among_the_rates() {
+        StandingAdult::new().each_posture(&mut Pcg64Mcg::new(SEED.into()), 5, |_, problem, iterate| {
+            let (n, rates) = (problem.unknowns(), problem.free.len());
+            let mut program = QuadraticProgram::default();
+            (program.n, program.rates) = (n, rates);
+            let size = iterate.write(1.0, &mut program);
+            let column = |i: usize| iterate.jacobian.iter().skip(i).step_by(n).map(|entry| entry * entry).sum::<f64>();
+            let largest = (0..rates).map(column).fold(0.0, f64::max);
+            assert!(largest > 0.0 && (size - largest).abs() < 1e-12 * largest, "{size} for {largest}");
+        });
     }
 }

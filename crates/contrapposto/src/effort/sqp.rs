@@ -394,7 +394,7 @@ mod tests {
     use rand_pcg::Pcg64Mcg;
 
     use super::super::standing_adult::StandingAdult;
-    use super::displace;
+    use super::{Control, SqpOptions, Step, displace};
 
     const SEED: u64 = 36;
 
@@ -413,5 +413,29 @@ mod tests {
             }
         });
         assert!(at_a_limit > 100, "seed {SEED}: {at_a_limit}");
+    }
+
+    /// Steps that predict half of the least gain, and keep that.
+    #[test]
+    fn small_gains_end_a_descent_only_where_whole_violations_are_corrected() {
+        let options = SqpOptions {
+            feasibility_step: 0.1,
+            gauss_newton_steps: 0,
+            trust_radius: 1.0,
+            extrapolates: false,
+            max_steps: 10,
+            least_gain: 1e-6,
+        };
+        let converged = |share: f64| {
+            let mut control = Control::new(&options);
+            let predicted = 0.5 * options.least_gain;
+            let step = Step { share, regularisation: 0.0, largest: 0.1, length: 1.0, merit: 1.0, predicted };
+            [0, 1, 2].map(|_| {
+                assert!(control.judge(&step, 1.0 - predicted, &options));
+                control.converged(&step)
+            })
+        };
+        assert_eq!(converged(1.0), [false, true, true]);
+        assert_eq!(converged(0.5), [false; 3]);
     }
 }

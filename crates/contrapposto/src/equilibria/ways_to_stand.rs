@@ -109,3 +109,68 @@ impl WayToStand {
         !joints.any(|(pair, idle)| !idle && far(pair)) && !self.shares.iter().zip(&other.shares).any(shifted)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use crate::contact::{Balance, Slip};
+    use crate::equilibria::Stability;
+    use crate::model::{Adult, Side, adult};
+    use crate::posture_solver::{Reason, SolvedPosture};
+
+    /// The adult with the right arm forward by so many degrees; its shoulder works at so much of its strength.
+    fn posture(model: &Model, degrees: f64, load: f64) -> RelaxedPosture {
+        let coordinate = model.coordinate("arm_flex_r").unwrap();
+        let mut posture = model.default_posture();
+        posture.values_mut()[coordinate] = f64::to_radians(degrees);
+        let relaxed = SolvedPosture {
+            posture,
+            levels: vec![],
+            effort: 0.0,
+            slip: Slip::default(),
+            balance: Balance::Held,
+            reason: Reason::Converged,
+            steps: 0,
+        };
+        let stability = Stability { equilibrium: None, directions: vec![], unstable: 0, without_energy: 0.0 };
+        let work = Work { coordinate, side: Side::Positive, active: 10.0 * load, strength: 10.0, endurance: 60.0 };
+        RelaxedPosture {
+            relaxed,
+            supports: vec![],
+            stability,
+            torques: [vec![], vec![]],
+            work: vec![work],
+            hanging: vec![],
+            starts: vec![],
+            mirrored: false,
+        }
+    }
+
+    /// The arms (degrees) of the ways among postures with these arms and loads, and the number of postures left out.
+    fn ways(all: &[(f64, f64)]) -> (Vec<f64>, usize) {
+        let model = adult(&Adult::default()).unwrap();
+        let idle = vec![false; model.segments().len()];
+        let mut found =
+            DifferentWays { idle, supports: vec![], mirror: None, postures: vec![], alike: 0, ways: vec![] };
+        let mut kinematics = Kinematics::new(&model);
+        for (degrees, load) in all {
+            let posture = posture(&model, *degrees, *load);
+            kinematics.update(&model, &posture.relaxed.posture).unwrap();
+            found.take(&model, &kinematics, posture);
+        }
+        let arm = model.coordinate("arm_flex_r").unwrap();
+        let arms = found.postures.iter().map(|one: &RelaxedPosture| one.relaxed.posture.values()[arm].to_degrees());
+        (arms.map(f64::round).collect(), found.alike)
+    }
+
+    #[test]
+    fn a_posture_that_is_known_beyond_strength_or_a_sixth_one_is_no_other_way_to_stand() {
+        assert_eq!(ways(&[(0.0, 0.5), (2.0, 0.5), (40.0, 0.5), (41.0, 0.5)]), (vec![0.0, 40.0], 2));
+        assert_eq!(ways(&[(0.0, 0.5), (40.0, 1.1), (80.0, 1.0)]), (vec![0.0, 80.0], 1));
+        assert_eq!(ways(&[(0.0, 1.1)]), (vec![0.0], 0), "where no posture needs less");
+        let seven: Vec<(f64, f64)> = (0..7).map(|k| (20.0 * f64::from(k), 0.5)).collect();
+        assert_eq!(ways(&seven), (vec![0.0, 20.0, 40.0, 60.0, 80.0], 2));
+    }
+}

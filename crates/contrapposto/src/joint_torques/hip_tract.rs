@@ -130,3 +130,39 @@ fn in_test(
     of_muscles.update(model, posture, &kinematics)?;
     Ok((of_leg, of_muscles.passive_torques()[0][rate]))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use crate::model::{Adult, adult};
+
+    #[test]
+    fn frames_of_a_band_have_x_along_any_axis_and_y_as_upright_as_that_allows() {
+        let model = adult(&Adult::default()).unwrap();
+        let mut posture = model.default_posture();
+        posture.values_mut()[model.coordinate("hip_flexion_r").unwrap()] = 0.4;
+        let mut kinematics = Kinematics::new(&model);
+        kinematics.update(&model, &posture).unwrap();
+        let [trunk, leg] = ["pelvis", "femur_r"].map(|name| model.segment(name).unwrap());
+        for axis in [Vector3::x(), Vector3::new(0.5, 0.6, 0.2), Vector3::new(-0.1, -0.9, 0.3)] {
+            let x = axis.normalize();
+            let y = (Vector3::y() - x * x.y).normalize();
+            let bushing = bushing_about(&model, &kinematics, (trunk, leg), axis).unwrap();
+            for (frame, segment) in bushing.frames.iter().zip([trunk, leg]) {
+                let at = kinematics.placement(&model, segment) * frame;
+                for (found, expected) in [(Vector3::x(), x), (Vector3::y(), y), (Vector3::z(), x.cross(&y))] {
+                    assert!(
+                        (at.rotation * found - expected).norm() < 1e-12,
+                        "{axis}: {} {expected}",
+                        at.rotation * found
+                    );
+                }
+                let hip = kinematics.placement(&model, leg).translation.vector;
+                assert!((at.translation.vector - hip).norm() < 1e-12);
+            }
+        }
+        assert!(bushing_about(&model, &kinematics, (trunk, leg), Vector3::y()).is_none(), "an upright axis has no up");
+    }
+}

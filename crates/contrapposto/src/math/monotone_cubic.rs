@@ -198,4 +198,11 @@ mod tests {
             }
         }
     }
+
+    /// Values and slopes of these points are numbers, the curvature between them is not.
+    #[test]
+    fn points_so_near_that_a_coefficient_is_no_number_have_no_curve() {
+        let at = |h: f64| MonotoneCubic::new(&[(0.0, 0.0), (h, h), (2.0 * h, 3.0 * h)]);
+        assert!(at(1e-100).is_some() && at(1e-200).is_none());
+    }
 }

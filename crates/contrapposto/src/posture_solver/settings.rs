@@ -251,3 +251,32 @@ fn check_half_space(model: &Model, space: &HalfSpace) -> Result<(), String> {
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::model::{Adult, adult};
+    use crate::tasks::{Point, Posture as RestPosture};
+
+    /// A hand and, below it, a rest posture.
+    #[test]
+    fn out_of_reach_is_a_level_that_is_not_reached_unless_it_asks_for_a_rest_posture_alone() {
+        let model = adult(&Adult::default()).unwrap();
+        let segment = model.segment("hand_r").unwrap();
+        let hand = Point { segment, point: Vector3::zeros(), target: Vector3::zeros(), axes: [true; 3] };
+        let rest = RestPosture::whole(&model, model.default_posture());
+        let levels = vec![Task::Point(hand).into(), Task::Posture(rest).into()];
+        let options = Options::inverse_kinematics();
+        let settings = Settings::new(SharedModel::Borrowed(&model), levels, &[], options).unwrap();
+        let is_out_of_reach =
+            |lengths: [f64; 2]| settings.is_out_of_reach(&lengths.map(|length| LevelError { rows: vec![], length }));
+        let tolerance = options.level_tolerance;
+        assert!(!is_out_of_reach([0.0, 0.0]) && !is_out_of_reach([0.5 * tolerance, 0.0]));
+        assert!(is_out_of_reach([2.0 * tolerance, 0.0]) && is_out_of_reach([0.3, 0.3]));
+        assert!(!is_out_of_reach([0.0, 0.3]), "nobody asks for the rest posture as for a target");
+    }
+}

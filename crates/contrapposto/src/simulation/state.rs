@@ -390,4 +390,37 @@ mod tests {
         let followed = state.follow(0, Side::Positive, decision(Outcome::Active, 0.2), 0.8, BODY);
         assert_eq!((followed.outcome, followed.goal), (Outcome::Stay, Some(0.8)));
     }
+
+    /// Of one coordinate and two supports, with one event.
+    #[test]
+    fn a_state_with_an_entry_too_few_or_too_many_or_a_number_that_is_none_does_not_fit() {
+        let fresh = || State::new(Posture::new(vec![0.0]), vec![Strategy::Passive], 2);
+        assert!(fresh().fits(1, 2, 1));
+        assert!(State { effort: None, effort_at_start: None, next_event: 1, ..fresh() }.fits(1, 2, 1));
+        let spoils: [(&str, fn(&mut State)); 18] = [
+            ("groups", |state| state.groups.clear()),
+            ("strategies", |state| state.strategies.push(Strategy::Active)),
+            ("active torques", |state| state.active.clear()),
+            ("fatigue", |state| state.fatigue.push([0.0; 2])),
+            ("decisions", |state| state.decisions.clear()),
+            ("requests", |state| state.requests.clear()),
+            ("steps tried", |state| state.step_tried.push(false)),
+            ("a half-space", |state| state.requests[0].half_space.normal.push(0.0)),
+            ("events", |state| state.next_event = 2),
+            ("the order of supports", |state| state.in_use = vec![1, 0]),
+            ("a support twice", |state| state.in_use = vec![1, 1]),
+            ("a support that is not there", |state| state.in_use = vec![0, 2]),
+            ("effort", |state| state.effort = Some(f64::NAN)),
+            ("effort at the start", |state| state.effort_at_start = Some(f64::INFINITY)),
+            ("an active torque", |state| state.active[0] = f64::INFINITY),
+            ("a fatigue", |state| state.fatigue[0][1] = f64::NAN),
+            ("a prediction", |state| state.requests[0].predicted_peak = f64::NAN),
+            ("a step", |state| state.requests[0].step = Some(f64::NAN)),
+        ];
+        for (what, spoil) in spoils {
+            let mut state = fresh();
+            spoil(&mut state);
+            assert!(!state.fits(1, 2, 1), "{what}");
+        }
+    }
 }

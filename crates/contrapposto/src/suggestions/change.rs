@@ -270,3 +270,49 @@ fn legs_of(model: &Model, start: &Posture, image: &Posture) -> Posture {
     });
     Posture::new(values.collect())
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use crate::contact::{Place, Support};
+    use crate::model::{Adult, adult};
+
+    /// The feet that change places, of the adult on these segments with the right thigh forward by so many degrees.
+    fn feet(names: [&str; 2], degrees: f64, share_max: f64) -> Option<[String; 2]> {
+        let model = adult(&Adult::default()).unwrap();
+        let mut start = model.default_posture();
+        start.values_mut()[model.coordinate("hip_flexion_r").unwrap()] = degrees.to_radians();
+        let support = |(name, share_max): (&str, f64)| {
+            let segment = model.segment(name).unwrap();
+            let corners = model.segments()[segment].patch.clone();
+            Support { segment, corners, normal: Vector3::y(), friction: 0.6, share_max, place: Place::Fixed }
+        };
+        let supports = [(names[0], 1.0), (names[1], share_max)].map(support);
+        let job = Job {
+            model: &model,
+            start: &start,
+            supports: &supports,
+            limits: &[],
+            rests: vec![],
+            levels: vec![],
+            loads: vec![],
+            asked: None,
+            strategy: None,
+        };
+        job.feet()
+    }
+
+    #[test]
+    fn feet_change_places_only_where_a_right_and_a_left_one_stand_one_ahead_of_the_other_and_carry_alike() {
+        let [right, left] = ["calcn_r", "calcn_l"];
+        let [right_first, left_first] = [[right, left], [left, right]].map(|names| Some(names.map(plain_name)));
+        assert_eq!(feet([right, left], 20.0, 1.0), right_first);
+        assert_eq!(feet([left, right], 20.0, 1.0), right_first);
+        assert_eq!(feet([right, left], -20.0, 1.0), left_first);
+        assert_eq!(feet([right, left], 0.0, 1.0), None, "side by side");
+        assert_eq!(feet([right, "toes_r"], 0.0, 1.0), None, "one foot");
+        assert_eq!(feet([right, left], 20.0, 0.5), None, "one of them rests");
+    }
+}

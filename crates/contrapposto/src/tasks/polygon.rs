@@ -95,3 +95,29 @@ fn corners(mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
     }
     hull
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::half_planes;
+
+    /// A square metre, each corner of which is given twice, at most half a nanometre apart, in every direction.
+    #[test]
+    fn a_corner_that_is_given_twice_within_rounding_has_no_edge_of_its_own() {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, z]| Vector3::new(x, 0.0, z));
+        for corner in corners {
+            for step in 0..16 {
+                let (sin, cos) = libm::sincos(0.1 + 0.393 * f64::from(step));
+                for apart in [1e-12, 5e-10] {
+                    let mut points = corners.to_vec();
+                    points.push(corner + apart * Vector3::new(cos, 0.0, sin));
+                    let planes = half_planes(&points, Vector3::new(0.0, -9.81, 0.0));
+                    assert_eq!(planes.len(), 4, "{corner} {step} {apart}");
+                    let middle = Vector3::new(0.5, 0.0, 0.5);
+                    assert!(planes.iter().all(|plane| (plane.excess(&middle) + 0.5).abs() < 1e-9));
+                }
+            }
+        }
+    }
+}

@@ -117,3 +117,59 @@ fn turned_roots(tracker: &Tracker, model: &Model, start: &Posture) -> Vec<Postur
 fn signed(turn: f64) -> f64 {
     if turn > 2.5 * FRAC_PI_2 { turn - 4.0 * FRAC_PI_2 } else { turn }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use std::f64::consts::PI;
+
+    use super::super::goals::Goals;
+    use super::*;
+    use crate::model::{Adult, adult};
+
+    #[test]
+    fn turned_roots_are_the_63_other_quarters_of_three_angles_each_within_half_a_turn() {
+        let model = adult(&Adult::default()).unwrap();
+        let tracker = Tracker::new(&model, Goals::default()).unwrap();
+        let start = model.default_posture();
+        let angles = ["pelvis_tilt", "pelvis_list", "pelvis_rotation"].map(|name| model.coordinate(name).unwrap());
+        let mut turns = vec![[0; 3]];
+        for turned in turned_roots(&tracker, &model, &start) {
+            turns.push(angles.map(|c| {
+                let turn = turned.values()[c] - start.values()[c];
+                assert!(turn > 0.1 - PI && turn < 0.1 + PI, "{turn}");
+                (turn / FRAC_PI_2).round() as i32
+            }));
+            let others = (0..start.values().len()).filter(|c| !angles.contains(c));
+            assert!(others.into_iter().all(|c| turned.values()[c] == start.values()[c]));
+        }
+        turns.sort_unstable();
+        turns.dedup();
+        assert_eq!(turns.len(), 64);
+    }
+
+    #[test]
+    fn held_are_the_coordinates_of_limbs_at_a_limit_that_are_neither_fixed_nor_dependent() {
+        let model = adult(&Adult::default()).unwrap();
+        let at = |name: &str| model.coordinate(name).unwrap();
+        let mut posture = model.default_posture();
+        let mut goals = Goals { fixed: vec![at("knee_angle_l")], ..Goals::default() };
+        for name in ["elbow_flex_r", "elbow_flex_l", "knee_angle_r", "knee_angle_l", "pelvis_tilt"] {
+            goals.limits.push((at(name), (0.2, 0.8)));
+        }
+        goals.limits.push((at("pro_sup_r"), (0.8, 0.8)));
+        for (name, value) in [
+            ("elbow_flex_r", 0.2),
+            ("elbow_flex_l", 0.5),
+            ("knee_angle_r", 0.8),
+            ("knee_angle_l", 0.8),
+            ("pelvis_tilt", 0.8),
+            ("pro_sup_r", 0.8),
+        ] {
+            posture.values_mut()[at(name)] = value;
+        }
+        let tracker = Tracker::new(&model, goals).unwrap();
+        assert_eq!(held(&tracker, &model, &posture), [at("elbow_flex_r"), at("knee_angle_r")]);
+    }
+}

@@ -273,3 +273,32 @@ impl Fit<'_> {
         Some(vec![half_hip, upper, upper, half_knee, lower, foot.map(ankle, to_ankle), foot.map(ball, to_ball)])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use contrapposto::model::adult;
+
+    use super::super::{Skeleton, asset};
+    use super::*;
+
+    #[test]
+    fn the_map_of_the_torso_carries_the_shoulders_as_far_aside_as_those_of_the_adult_are() {
+        let asset = Asset::read(asset::BYTES).unwrap();
+        for (sex, stature, mass) in [(Sex::Female, 1.5, 45.0), (Sex::Male, 1.741, 73.0), (Sex::Male, 1.95, 110.0)] {
+            let size = Adult { sex, stature, mass, ..Adult::default() };
+            let (model, male) = (adult(&size).unwrap(), sex == Sex::Male);
+            let skeleton = Skeleton::of(&model).unwrap();
+            let source_stature = asset.middle(male, Middle::Top).y - asset.middle(male, Middle::Sole).y;
+            let scale = stature / source_stature;
+            let fit = Fit { asset: &asset, model: &model, rest: &skeleton.rest, male, scale, source_stature };
+            let torso = fit.maps().unwrap()[2];
+            for (left, name) in [(false, "humerus_r"), (true, "humerus_l")] {
+                let joint = skeleton.rest[model.segment(name).unwrap()].translation.vector;
+                let shoulder = torso.apply(&fit.shoulder(left).unwrap());
+                assert!((shoulder.z - joint.z).abs() < 2e-3, "{name} of {stature} m: {} {}", shoulder.z, joint.z);
+            }
+        }
+    }
+}

@@ -178,3 +178,29 @@ pub(super) fn wall(normal: Vector3<f64>, point: Vector3<f64>) -> Thing {
     let size = if normal.x == 0.0 { [width, height, thickness] } else { [thickness, height, width] };
     thing("wall", size, point - 0.5 * thickness * normal + Vector3::new(0.0, 0.5 * height, 0.0), None)
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use contrapposto::model::{Adult, adult};
+
+    use super::*;
+
+    /// A litre of water weighs 1 kg.
+    #[test]
+    fn a_weight_in_a_hand_is_a_cube_of_water() {
+        let model = adult(&Adult::default()).unwrap();
+        let load = |name: &str, mass: f64| Load {
+            segment: model.segment(name).unwrap(),
+            point: Vector3::new(0.0, -0.1, 0.0),
+            kind: LoadKind::Weight(mass),
+        };
+        let loads = [load("hand_r", 1.0), load("hand_l", 27.0), load("torso", 5.0), load("hand_r", 0.0)];
+        let drawn: Vec<Thing> = weights(&model, &loads).collect();
+        assert_eq!(drawn.len(), 2);
+        for (cube, edge) in drawn.iter().zip([0.1, 0.3]) {
+            assert!((cube.size - Vector3::repeat(edge)).norm() < 1e-12, "{}", cube.size);
+        }
+    }
+}

@@ -216,3 +216,25 @@ impl TendonCurve {
         Ok(Curve::new(&knots, curviness))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::ActiveCurve;
+
+    /// Beyond the summit, which ends 0.05 above the optimal length.
+    #[test]
+    fn the_active_curve_falls_to_half_with_the_slope_of_a_line_from_summit_to_end_and_on_to_its_floor() {
+        for greatest in [1.3, 1.8123, 2.4] {
+            let curve = ActiveCurve { greatest, ..ActiveCurve::default() }.curve().unwrap();
+            let (value, slope) = curve.at(0.5 * (1.05 + greatest));
+            assert!((value - 0.5).abs() < 1e-12, "{value}");
+            assert!((slope + 1.0 / (greatest - 1.1)).abs() < 1e-9, "{slope}");
+            let values: Vec<f64> =
+                (0..=200).map(|k| curve.at(1.0 + (greatest - 1.0) * f64::from(k) / 200.0).0).collect();
+            assert!(values.windows(2).all(|pair| pair[1] <= pair[0] + 1e-12), "{values:?}");
+            assert!((values[0] - 1.0).abs() < 1e-12 && (values[200] - 0.1).abs() < 1e-12);
+        }
+    }
+}

@@ -50,3 +50,32 @@ fn tangent(radius: f64, point: &Vector2<f64>, sense: f64) -> Vector2<f64> {
     let across = sense * radius * (square - radius * radius).sqrt();
     (point * (radius * radius) + Vector2::new(point.y, -point.x) * across) / square
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Rotation2, Vector2};
+
+    use super::round;
+
+    /// Radius of the circle, m.
+    const RADIUS: f64 = 0.03;
+
+    /// A straight line at the distance of the radius, to rounding, in many directions.
+    #[test]
+    fn a_line_that_only_just_touches_turns_by_nothing() {
+        let mut touching = 0;
+        for k in 0..2000 {
+            let turn = Rotation2::new(0.1 + 0.7 * f64::from(k));
+            let (before, after) = (0.02 + 1e-4 * f64::from(k % 37), 0.05 + 1e-4 * f64::from(k % 53));
+            let ends = [Vector2::new(-before, RADIUS), Vector2::new(after, RADIUS)].map(|end| turn * end);
+            for ends in [ends, [ends[1], ends[0]]] {
+                let Some(line) = round(RADIUS, ends, None) else { continue };
+                touching += 1;
+                assert!(line.arc < 1e-6 * RADIUS, "{k}: {line:?}");
+                let place = turn * Vector2::new(0.0, RADIUS);
+                assert!((line.first - place).norm() < 1e-8 && (line.second - place).norm() < 1e-8, "{k}: {line:?}");
+            }
+        }
+        assert!(touching > 100, "{touching}");
+    }
+}

@@ -160,3 +160,31 @@ impl Ellipsoid {
         Section { first, second, angle: radius * angle, length, total }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point on the surface counts as outside where it lies inside by rounding, and where it lies outside by as little.
+    #[test]
+    fn a_point_is_inside_only_beyond_the_thickness_of_the_surface() {
+        let half_axes = V::new(0.05, 0.03, 0.04);
+        let wrapped = |square: f64| {
+            let from = V::new(0.05 * square.sqrt(), 0.0, 0.0);
+            let to = V::new(-0.1, 0.01, 0.0);
+            [wrap(&half_axes, Quadrant::All, &from, &to), wrap(&half_axes, Quadrant::All, &to, &from)]
+        };
+        for outside in [1.0 + 0.5 * ELLIPSOID_ON, 1.0 + 2.0 * ELLIPSOID_ON] {
+            for wrapping in wrapped(outside) {
+                let Wrapping::Crosses(contact) = wrapping else { panic!("{outside}: {wrapping:?}") };
+                let straight = (contact.second - contact.first).norm();
+                assert!(
+                    straight > 0.07 && contact.length > straight + 0.005,
+                    "about a third of the way round: {contact:?}"
+                );
+            }
+        }
+        assert!(wrapped(1.0 - 0.5 * ELLIPSOID_ON).iter().all(|wrapping| *wrapping != Wrapping::Inside));
+        assert!(wrapped(1.0 - 2.0 * ELLIPSOID_ON).iter().all(|wrapping| *wrapping == Wrapping::Inside));
+    }
+}

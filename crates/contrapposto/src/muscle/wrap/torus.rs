@@ -101,3 +101,46 @@ impl Surface for Torus {
         (place - self.circle / flat.norm() * flat) / self.tube
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use std::f64::consts::TAU;
+
+    use rand::RngExt;
+    use rand_pcg::Pcg64Mcg;
+
+    use super::{V, through_hole};
+
+    const SEED: u128 = 96;
+    /// Places of the edge that are compared.
+    const PLACES: u32 = 20_000;
+
+    /// The line passes outside of the disc, so that its edge is where the way bends.
+    #[test]
+    fn no_other_place_of_the_edge_makes_the_way_through_a_hole_shorter() {
+        let mut random = Pcg64Mcg::new(SEED);
+        let mut compared = 0;
+        while compared < 40 {
+            let mut at = |z: std::ops::Range<f64>| {
+                V::new(random.random_range(-0.3..0.3), random.random_range(-0.3..0.3), random.random_range(z))
+            };
+            let (from, to) = (at(0.02..0.3), at(-0.3..-0.02));
+            if (from + from.z / (from.z - to.z) * (to - from)).norm() < 0.1 {
+                continue;
+            }
+            compared += 1;
+            let length = |place: V| (place - from).norm() + (to - place).norm();
+            let place = |k: u32| {
+                let (sin, cos) = libm::sincos(TAU * f64::from(k) / f64::from(PLACES));
+                0.1 * V::new(cos, sin, 0.0)
+            };
+            let least = (0..PLACES).map(|k| length(place(k))).fold(f64::INFINITY, f64::min);
+            let found = through_hole(0.1, &from, &to).unwrap();
+            assert!((found.norm() - 0.1).abs() < 1e-15 && found.z == 0.0, "{found}");
+            assert!(length(found) < least + 1e-14, "seed {SEED}: {} is more than {least}", length(found));
+        }
+        assert_eq!(through_hole(0.1, &V::new(0.2, 0.0, 0.1), &V::new(-0.2, 0.0, 0.1)), None, "on one side");
+    }
+}
