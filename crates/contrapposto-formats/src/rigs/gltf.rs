@@ -90,15 +90,9 @@ fn rig(bytes: &[u8]) -> Result<Rig, GltfError> {
     }
     let (start, frame_time, count) = sampling(&keys);
     let kept: Vec<usize> = order.into_iter().filter(|&node| nodes[node].kept).collect();
-    let most = bytes.len().saturating_add(MORE_NUMBERS_OF_FRAMES).min(MOST_NUMBERS);
-    let channels = CHANNELS.len() * kept.len();
-    if count.saturating_mul(channels) > most {
-        let message = format!("{count} frames of {} joints have more than {most} numbers", kept.len());
-        return Err(GltfError::at("/animations/0", message, "a shorter animation is accepted"));
-    }
+    let frames = empty_frames(count, kept.len(), bytes.len())?;
     // A node's place in the axes of the one that carries it, in units of the scene.
     let mut scales = vec![1.0; nodes.len()];
-    let frames = (0..count).map(|_| Vec::with_capacity(channels)).collect();
     let mut rig = Rig { joints: vec![], ends: vec![], frame_time, frames, warnings };
     let mut index = vec![0; nodes.len()];
     for (number, &of) in kept.iter().enumerate() {
@@ -125,6 +119,17 @@ fn rig(bytes: &[u8]) -> Result<Rig, GltfError> {
         });
     }
     Ok(rig)
+}
+
+/// So many frames without numbers yet, with room for those of so many joints. `bytes`: those of the file.
+fn empty_frames(count: usize, joints: usize, bytes: usize) -> Result<Vec<Vec<f64>>, GltfError> {
+    let most = bytes.saturating_add(MORE_NUMBERS_OF_FRAMES).min(MOST_NUMBERS);
+    let channels = CHANNELS.len() * joints;
+    if count.saturating_mul(channels) > most {
+        let message = format!("{count} frames of {joints} joints have more than {most} numbers");
+        return Err(GltfError::at("/animations/0", message, "a shorter animation is accepted"));
+    }
+    Ok((0..count).map(|_| Vec::with_capacity(channels)).collect())
 }
 
 /// All nodes, and their numbers with parents before children.
