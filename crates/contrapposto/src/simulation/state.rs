@@ -397,7 +397,8 @@ mod tests {
         let fresh = || State::new(Posture::new(vec![0.0]), vec![Strategy::Passive], 2);
         assert!(fresh().fits(1, 2, 1));
         assert!(State { effort: None, effort_at_start: None, next_event: 1, ..fresh() }.fits(1, 2, 1));
-        let spoils: [(&str, fn(&mut State)); 18] = [
+        type Spoil = (&'static str, fn(&mut State));
+        let spoils: [Spoil; 18] = [
             ("groups", |state| state.groups.clear()),
             ("strategies", |state| state.strategies.push(Strategy::Active)),
             ("active torques", |state| state.active.clear()),
