@@ -24,7 +24,7 @@ pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
 
 /// Most commas, equals signs and opening brackets of a file: every value has one, and needs up to 650 bytes of memory, 64 MiB at most
 /// (a table of 20,000 points has 60,000).
-const MOST_VALUES: usize = 80_000;
+const MOST_VALUES: usize = 70_000;
 
 /// The keys and values of a text, all numbers finite, and where they stand.
 pub(crate) fn parse_toml<'a>(name: &'a str, text: &'a str) -> Result<(Source<'a>, Spanned<DeTable<'a>>), InputError> {
