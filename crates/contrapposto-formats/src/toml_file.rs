@@ -22,17 +22,21 @@ pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
     convert(&Located { source, tree: tree.get_ref(), aliases: vec![] }, &parsed)
 }
 
-/// Most commas, equals signs and opening brackets of a file: every value has one, and needs up to 650 bytes of memory, 64 MiB at most
-/// (a table of 20,000 points has 60,000).
-const MOST_VALUES: usize = 70_000;
+/// Most commas, equals signs and opening brackets of a file without other lines: every value has one, and needs up to 650 bytes of memory, 64 MiB at
+/// most (a table of 20,000 points has 60,000).
+const MOST_VALUES: usize = 75_000;
+/// Lines that need as much memory as a value.
+const LINES_FOR_A_VALUE: usize = 15;
 
 /// The keys and values of a text, all numbers finite, and where they stand.
 pub(crate) fn parse_toml<'a>(name: &'a str, text: &'a str) -> Result<(Source<'a>, Spanned<DeTable<'a>>), InputError> {
     let source = Source { name, text };
     let values = text.bytes().filter(|byte| b",=[".contains(byte)).count();
-    if values > MOST_VALUES {
-        let message = format!("the file has {values} commas, equals signs and opening brackets");
-        let help = Some(format!("{MOST_VALUES} at most are accepted: write fewer values"));
+    let lines = text.bytes().filter(|byte| *byte == b'\n').count();
+    let most = MOST_VALUES.saturating_sub(lines / LINES_FOR_A_VALUE);
+    if values > most {
+        let message = format!("the file has {values} commas, equals signs and opening brackets in {lines} lines");
+        let help = Some(format!("in so many lines {most} at most are accepted: write fewer values"));
         return Err(source.error(placed(None), message, "here", help));
     }
     let tree = DeTable::parse(text).map_err(|error| not_toml(&source, &error))?;
