@@ -24,9 +24,9 @@ pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
 
 /// Most commas, equals signs and opening brackets of a file without other lines: every value has one, and needs up to 650 bytes of memory, 64 MiB at
 /// most (a table of 20,000 points has 60,000).
-const MOST_VALUES: usize = 75_000;
+const MOST_VALUES: usize = 62_000;
 /// Lines that need as much memory as a value.
-const LINES_FOR_A_VALUE: usize = 15;
+const LINES_FOR_A_VALUE: usize = 20;
 
 /// The keys and values of a text, all numbers finite, and where they stand.
 pub(crate) fn parse_toml<'a>(name: &'a str, text: &'a str) -> Result<(Source<'a>, Spanned<DeTable<'a>>), InputError> {

@@ -388,7 +388,7 @@ fn plan(i: usize) -> String {
         0 => {
             let list = ["0,", "true,", "0.5, ", "\"\","][(i / 5) % 4];
             // As many values as are allowed, or more.
-            let count = if i < 10 { 68_500 } else { (1 << 20) / list.len() - 99 };
+            let count = if i < 10 { 58_000 } else { (1 << 20) / list.len() - 99 };
             head("random", "rows = 1000\n") + &format!("p = {{ list = [{}0] }}\n", list.repeat(count))
         }
         1 => toml(i / 5, &head("random", "rows = 10_000_000\n"), 64, correlated),
@@ -420,12 +420,12 @@ fn plans_and_their_scenarios_of_1_mib_need_at_most_64_mib_and_1_s() {
         .collect();
     let make = |i: usize| {
         let head = "format = 1\n[run]\nduration_s = 1\n".to_owned() + &"[[load]]\nmass_kg = 1\n".repeat(64);
-        let numbers = |number: &str| format!("{head}numbers = [{}0]\n", number.repeat(34_000));
+        let numbers = |number: &str| format!("{head}numbers = [{}0]\n", number.repeat(30_000));
         match i % 5 {
             0 => numbers(["0,", "0.5,", "true,", "\"\","][(i / 5) % 4]),
             1 => numbers(["[],", "[0],", "{},", "{a=0},"][(i / 5) % 4]),
-            2 => toml(i / 5, &head, 68_500, |k| format!("[t{k}]\n")),
-            3 => toml(i / 5, &head, 68_500, |k| format!("k{k}=0\n")),
+            2 => toml(i / 5, &head, 58_000, |k| format!("[t{k}]\n")),
+            3 => toml(i / 5, &head, 58_000, |k| format!("k{k}=0\n")),
             _ => toml(i / 5, &head, 900, |k| tables_of_a_job(i / 5, k)),
         }
     };
