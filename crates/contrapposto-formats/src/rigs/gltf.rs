@@ -121,7 +121,7 @@ fn rig(bytes: &[u8]) -> Result<Rig, GltfError> {
     Ok(rig)
 }
 
-/// So many frames without numbers yet, with room for those of so many joints. `bytes`: those of the file.
+/// The frames of an animation, each empty with room for the numbers of all joints. `bytes`: size of the file.
 fn empty_frames(count: usize, joints: usize, bytes: usize) -> Result<Vec<Vec<f64>>, GltfError> {
     let most = bytes.saturating_add(MORE_NUMBERS_OF_FRAMES).min(MOST_NUMBERS);
     let channels = CHANNELS.len() * joints;

@@ -348,7 +348,7 @@ impl<'a> BodyMotion<'a> {
 }
 
 /// Whether a level asks for something.
-fn asks(level: &&PriorityLevel) -> bool {
+pub(super) fn asks(level: &&PriorityLevel) -> bool {
     !level.tasks.is_empty() || !level.half_spaces.is_empty()
 }
 

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::ScenarioError;
-use super::body_motion::{BodyMotion, engine, is_effort};
+use super::body_motion::{BodyMotion, asks, engine, is_effort};
 use super::easiest::{
     Budget, MOST_SLIP, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference, is_better, search,
 };
@@ -53,8 +53,8 @@ impl BodyMotion<'_> {
         Ok(Searched { found: posture, minima, work: work + steps, cut })
     }
 
-    /// The local minimum of effort near a posture, all joints free, where that is worth a motion; the posture itself elsewhere. And its steps:
-    /// the search leaves the joints that move a support as they were, and with another trunk and other arms they stand otherwise.
+    /// The local minimum of effort near a posture, all joints free, where that is worth a motion, else the posture itself; and the number of steps.
+    /// The search leaves the joints that move a support as they were; with another trunk and other arms another angle of them is easiest.
     fn settled(&mut self, posture: Posture) -> Result<(Posture, usize), ScenarioError> {
         if !self.engine.levels().iter().any(is_effort) {
             return Ok((posture, 0));
@@ -66,8 +66,8 @@ impl BodyMotion<'_> {
         Ok((if better { settled.posture } else { posture }, settled.steps))
     }
 
-    /// A solve of all levels from a posture, on the supports as the start has them; with effort, to the nearest of so many local minima. The engine
-    /// is one of its own for that time: with many tasks it is large.
+    /// Solves all levels from a posture, on the supports as the start has them, and compares so many local minima of effort. The engine is dropped
+    /// afterwards: with many tasks engines are large.
     fn solved(&self, from: &Posture, local_minima: usize) -> Result<SolvedPosture, ScenarioError> {
         let options = Options { max_step: START_MAX_STEP, local_minima, ..Options::least_effort() };
         let (levels, start) = (self.levels().cloned().collect(), &self.scenario.start);
@@ -100,8 +100,7 @@ impl BodyMotion<'_> {
     /// Errors of the levels above effort that ask for something, in the posture of the last update.
     fn errors_above_effort(&self) -> Vec<f64> {
         let levels = self.engine.levels().iter().enumerate().take_while(|(_, level)| !is_effort(level));
-        let asks = levels.filter(|(_, level)| !level.tasks.is_empty() || !level.half_spaces.is_empty());
-        asks.map(|(i, _)| self.engine.error(i)).collect()
+        levels.filter(|(_, level)| asks(level)).map(|(i, _)| self.engine.error(i)).collect()
     }
 
     /// Whether a solve of all levels leaves one above effort unreached.

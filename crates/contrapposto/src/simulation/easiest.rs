@@ -14,6 +14,7 @@ use crate::statics::Load;
 use crate::tasks::{PriorityLevel, Task};
 
 use super::Scenario;
+use super::body_motion::asks;
 
 /// Largest change of a rate in a step of the search, rad or m.
 const SEARCH_STEP: f64 = 0.1;
@@ -132,7 +133,6 @@ pub(super) fn search(
     locked: &[usize],
     budget: Budget,
 ) -> Result<Searched<Vec<RelaxedPosture>>, SearchError> {
-    let asks = |level: &&PriorityLevel| !level.tasks.is_empty() || !level.half_spaces.is_empty();
     let goals: Vec<PriorityLevel> = now.levels.iter().filter(asks).cloned().collect();
     let search = Search {
         model: now.model,

@@ -102,3 +102,41 @@ pub(super) fn limits_with(
     };
     limits.iter().map(limit).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
+
+    use super::*;
+    use crate::model::{Adult, adult};
+    use crate::tasks::Point;
+
+    #[test]
+    fn an_arm_hangs_but_while_its_hand_rests_and_all_other_tasks_stay() {
+        let model = adult(&Adult::default()).unwrap();
+        let segment = |name: &str| model.segment(name).unwrap();
+        let hangs = |name: &str| {
+            let component =
+                Component { of: Carried::Direction(-Vector3::y_axis()), along: -Vector3::y_axis(), limits: (0.9, 1.0) };
+            Task::Bounds(Bounds { segment: segment(name), components: vec![component] })
+        };
+        let (hand, feet) = (segment("hand_l"), [segment("calcn_r"), segment("calcn_l")]);
+        let support = |segment: usize| Support {
+            segment,
+            corners: model.segments()[segment].patch.clone(),
+            normal: Vector3::y(),
+            friction: 0.5,
+            share_max: 1.0,
+            place: Place::Fixed,
+        };
+        let supports = [support(feet[0]), support(feet[1]), support(hand)];
+        let rests = [Rest { support: 2, height: 0.7, inward: Vector3::y() }];
+        let point =
+            Task::Point(Point { segment: hand, point: Vector3::zeros(), target: Vector3::zeros(), axes: [true; 3] });
+        let tasks = vec![hangs("humerus_r"), hangs("humerus_l"), point];
+        let goal = PriorityLevel { tasks: tasks.clone(), ..PriorityLevel::default() };
+        let with = |in_use: &[usize]| goal_with(&goal, (&rests, &supports), &model, in_use).tasks;
+        assert_eq!(with(&[0, 1]), tasks);
+        assert_eq!(with(&[0, 1, 2]), [tasks[0].clone(), tasks[2].clone()]);
+    }
+}

@@ -83,3 +83,40 @@ impl Findings {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
+
+    use super::*;
+    use crate::model::{Adult, Side, adult};
+
+    /// At 300 s a group fails in people of mean strength; in weaker ones another does at 60 s, in stronger ones a third at 500 s.
+    #[test]
+    fn the_range_of_a_job_is_that_of_whichever_group_fails_first() {
+        let model = adult(&Adult::default()).unwrap();
+        let coordinate = model.coordinate("arm_flex_r").unwrap();
+        let muscles = &model.coordinates()[coordinate].groups.as_ref().unwrap()[0];
+        let who = Who { coordinate, side: Side::Positive, load: 0.2 };
+        let history = LoadHistory::constant(0.2);
+        let group = |left: f64, range: (f64, f64)| GroupAtEnd {
+            who,
+            muscles,
+            history: &history,
+            start: 0.0,
+            fatigue: 0.9,
+            seconds_left: Some(left),
+            of_people: Some(range),
+        };
+        let groups = [group(0.0, (120.0, 700.0)), group(1000.0, (60.0, 900.0)), group(100.0, (90.0, 500.0))];
+        let range = |time: f64| {
+            let fails = Some(Failure { who, time, range: (120.0, 700.0) });
+            let mut findings = Findings { fails, ..Findings::default() };
+            findings.take_end(&groups, (0.0, 400.0));
+            (findings.fails.unwrap().range, findings.least)
+        };
+        assert_eq!(range(300.0), ((60.0, 500.0), Some(60.0)));
+        // The time of the mean person lies within.
+        assert_eq!(range(600.0).0, (60.0, 600.0));
+    }
+}
