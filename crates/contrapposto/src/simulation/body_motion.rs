@@ -121,7 +121,7 @@ impl<'a> BodyMotion<'a> {
 
     /// The levels that ask for something.
     pub(super) fn levels(&self) -> impl Iterator<Item = &PriorityLevel> {
-        self.engine.levels().iter().filter(asks)
+        self.engine.levels().iter().filter(|level| level.asks())
     }
 
     /// The levels that ask for something while the supports with these numbers are in use.
@@ -130,7 +130,7 @@ impl<'a> BodyMotion<'a> {
         for (goal, &level) in self.goals.iter().zip(&self.task_levels) {
             levels[level] = self.scenario.goal_with(goal, in_use);
         }
-        levels.retain(|level| asks(&level));
+        levels.retain(PriorityLevel::asks);
         levels
     }
 
@@ -345,11 +345,6 @@ impl<'a> BodyMotion<'a> {
         }
         Contact { force: contact.force(support), share: contact.share(support), center_of_pressure, couple }
     }
-}
-
-/// Whether a level asks for something.
-pub(super) fn asks(level: &&PriorityLevel) -> bool {
-    !level.tasks.is_empty() || !level.half_spaces.is_empty()
 }
 
 /// Whether effort is asked for.

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::ScenarioError;
-use super::body_motion::{BodyMotion, asks, engine, is_effort};
+use super::body_motion::{BodyMotion, engine, is_effort};
 use super::easiest::{
     Budget, MOST_SLIP, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference, is_better, search,
 };
@@ -100,7 +100,7 @@ impl BodyMotion<'_> {
     /// Errors of the levels above effort that ask for something, in the posture of the last update.
     fn errors_above_effort(&self) -> Vec<f64> {
         let levels = self.engine.levels().iter().enumerate().take_while(|(_, level)| !is_effort(level));
-        levels.filter(|(_, level)| asks(level)).map(|(i, _)| self.engine.error(i)).collect()
+        levels.filter(|(_, level)| level.asks()).map(|(i, _)| self.engine.error(i)).collect()
     }
 
     /// Whether a solve of all levels leaves one above effort unreached.

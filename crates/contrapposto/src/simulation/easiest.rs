@@ -14,7 +14,6 @@ use crate::statics::Load;
 use crate::tasks::{PriorityLevel, Task};
 
 use super::Scenario;
-use super::body_motion::asks;
 
 /// Largest change of a rate in a step of the search, rad or m.
 const SEARCH_STEP: f64 = 0.1;
@@ -133,7 +132,7 @@ pub(super) fn search(
     locked: &[usize],
     budget: Budget,
 ) -> Result<Searched<Vec<RelaxedPosture>>, SearchError> {
-    let goals: Vec<PriorityLevel> = now.levels.iter().filter(asks).cloned().collect();
+    let goals: Vec<PriorityLevel> = now.levels.iter().filter(|level| level.asks()).cloned().collect();
     let search = Search {
         model: now.model,
         start: now.posture,

@@ -17,6 +17,11 @@ pub struct PriorityLevel {
 }
 
 impl PriorityLevel {
+    /// Whether the level asks for something.
+    pub(crate) fn asks(&self) -> bool {
+        !self.tasks.is_empty() || !self.half_spaces.is_empty()
+    }
+
     /// Number of rows: the errors of the tasks, then the half-spaces.
     pub(crate) fn rows(&self) -> usize {
         self.tasks.iter().map(Task::rows).sum::<usize>() + self.half_spaces.len()
