@@ -9,9 +9,14 @@ use contrapposto::model::{Adult, Model, adult};
 use contrapposto::muscle::{PathGeometry, PathRule};
 use contrapposto::posture_solver::Engine;
 use contrapposto::simulation::{Run, Scenario, Snapshot, Tables};
+use contrapposto_formats::loads::external_loads;
+use contrapposto_formats::markers::{marker_set, read_force_plates, read_markers, scale_setup, tracking_tasks};
 use contrapposto_formats::motion::read_table;
+use contrapposto_formats::rigs::{Rig, read_bvh, read_gltf};
 use contrapposto_formats::write;
-use contrapposto_formats::{minimize_line, overlay, read_model, read_pose, read_relax, read_scenario};
+use contrapposto_formats::{
+    Distribution, Template, minimize_line, overlay, read_model, read_plan, read_pose, read_relax, read_scenario,
+};
 
 /// Samples of a run that are computed.
 const SAMPLES: usize = 4;
@@ -71,6 +76,74 @@ pub fn motion(bytes: &[u8]) {
     for row in &table.rows {
         assert_eq!(row.len(), table.columns.len());
         finite("row", row);
+    }
+}
+
+/// Markers of a trial (`.trc`, C3D) and its force plates.
+pub fn markers(bytes: &[u8]) {
+    if let Ok(markers) = read_markers("markers.trc", bytes, None) {
+        finite("time", &markers.times);
+        assert_eq!(markers.places.len(), markers.times.len());
+        for frame in &markers.places {
+            assert_eq!(frame.len(), markers.names.len());
+            frame.iter().flatten().for_each(|place| finite("place", place.as_slice()));
+        }
+    }
+    let Ok(read) = read_force_plates("markers.c3d", bytes, None) else { return };
+    finite("time", &read.times);
+    for plate in &read.plates {
+        assert_eq!((plate.forces.len(), plate.moments.len()), (read.times.len(), read.times.len()));
+        let vectors = plate.corners.iter().chain([&plate.up, &plate.center]).chain(&plate.forces).chain(&plate.moments);
+        vectors.for_each(|vector| finite("force plate", vector.as_slice()));
+    }
+}
+
+/// A rig and its motion, BVH or glTF.
+pub fn rig(bytes: &[u8]) {
+    read_bvh("rig.bvh", bytes).iter().for_each(finite_rig);
+    read_gltf("rig.glb", bytes).iter().for_each(finite_rig);
+}
+
+fn finite_rig(rig: &Rig) {
+    finite("time between frames", &[rig.frame_time]);
+    for (i, joint) in rig.joints.iter().enumerate() {
+        assert!(joint.parent.is_none_or(|parent| parent < i), "a parent comes before its child");
+        finite("offset", joint.offset.as_slice());
+        finite("rest", joint.rest.coords.as_slice());
+    }
+    rig.frames.iter().for_each(|frame| finite("frame", frame));
+}
+
+/// Setup files of OpenSim's tools: marker sets, tasks, scale setups, external loads.
+pub fn setup(bytes: &[u8]) {
+    let bodies = ["pelvis".to_owned(), "torso".to_owned()];
+    for marker in marker_set("set.xml", bytes, &bodies).into_iter().flatten() {
+        finite("place of a marker", marker.location.as_slice());
+    }
+    if let Ok(tasks) = tracking_tasks("tasks.xml", bytes) {
+        finite("weight", &tasks.markers.iter().map(|task| task.weight).collect::<Vec<_>>());
+        finite("weight", &tasks.coordinates.iter().map(|task| task.weight).collect::<Vec<_>>());
+    }
+    if let Ok(setup) = scale_setup("scale.xml", bytes) {
+        finite("mass", setup.mass.as_slice());
+    }
+    let _ = external_loads(bytes);
+}
+
+/// A plan of a sweep: where its parameters are keys of the base, the scenario with values of its lists is read.
+pub fn plan(bytes: &[u8]) {
+    let Ok(plan) = read_plan("plan.toml", bytes) else { return };
+    assert!(plan.rows_of(plan.parts() - 1).end == plan.rows, "the parts are all rows");
+    plan.mixing.iter().flatten().for_each(|row| finite("mixing", row));
+    let keys = plan.parameters.iter().map(|parameter| parameter.key.as_str());
+    let Ok(template) = Template::new("scenario.toml", ONE_JOINT.as_bytes(), keys) else { return };
+    let first = |distribution: &Distribution| match distribution {
+        Distribution::List(values) => values.first().cloned(),
+        _ => None,
+    };
+    let values: Option<Vec<_>> = plan.parameters.iter().map(|parameter| first(&parameter.distribution)).collect();
+    if let Some(values) = values {
+        let _ = read_scenario("scenario.toml", template.text(&values).as_bytes(), None);
     }
 }
 

@@ -257,8 +257,8 @@ impl<'a> Words<'a> {
             // `Frames:120`, without a blank.
             Some(word)
                 if word
-                    .get(..=known.len())
-                    .is_some_and(|w| w[..known.len()].eq_ignore_ascii_case(known) && w.ends_with(':')) =>
+                    .split_at_checked(known.len())
+                    .is_some_and(|(name, rest)| name.eq_ignore_ascii_case(known) && rest.starts_with(':')) =>
             {
                 self.at -= word.len() - known.len() - 1;
             }
@@ -347,6 +347,21 @@ mod tests {
         assert_eq!(read_bvh("a.bvh", chain(&names, most).as_bytes()).unwrap().frames.len(), most);
         let error = read_bvh("a.bvh", chain(&names, most + 1).as_bytes()).unwrap_err().to_string();
         assert!(error.contains("2000 joints times frames are more than 10000000"), "{error}");
+    }
+
+    /// A letter of several bytes inside a label once ended in a panic.
+    #[test]
+    fn letters_of_several_bytes_are_refused_or_read_wherever_they_stand() {
+        let text = chain(&["a".to_owned()], 2).replace("Frames: 2", "Frames:2");
+        assert!(read_bvh("a.bvh", text.as_bytes()).is_ok());
+        for at in 0..text.len() {
+            for letter in ['\u{e9}', '\u{feff}', '\u{1d11e}'] {
+                let changed = format!("{}{letter}{}", &text[..at], &text[at..]);
+                let _ = read_bvh("a.bvh", changed.as_bytes());
+            }
+        }
+        let refused = read_bvh("a.bvh", text.replace("Frames", "Fram\u{feff}").as_bytes()).unwrap_err().to_string();
+        assert!(refused.contains("stands where `Frames` is due"), "{refused}");
     }
 
     #[test]

@@ -1,18 +1,28 @@
-//! Random worlds: bodies on feet or a seat with tasks, loads, obstacles, events and strategies at random, run for some seconds. Every
-//! sample keeps what the program promises, a second run gives the same bits, and so does one that is resumed from a snapshot.
+//! Random worlds: bodies of the library and of files, with muscles or without, on feet or a seat with tasks, loads, things, events and
+//! strategies at random, run for some seconds. Every sample keeps what the program promises, a second run with another number of threads gives
+//! the same bits, and so does one that is resumed from a snapshot. `CONTRAPPOSTO_DIGESTS` names a file that gets a line of each world with all
+//! bits of its samples, to compare two builds.
 
 use crate::common::{processor_time, samples};
+mod body;
+#[path = "../../../contrapposto/tests/no_chatter/judge.rs"]
+mod judge;
+mod targets;
 mod world;
 
+use std::io::Write;
 use std::time::Instant;
 
 use contrapposto::contact::Slip;
 use contrapposto::simulation::{Run, Scenario, ScenarioError, Snapshot, StopReason};
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::read_scenario;
+use judge::{Findings, Judge};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg as Random;
 use samples::{Worst, digest};
+use targets::Targets;
+use world::World;
 
 /// Worlds of the suite; `CONTRAPPOSTO_WORLDS` asks for others.
 const WORLDS: u64 = 6;
@@ -23,6 +33,8 @@ const SLOW: f64 = 1.0;
 struct Course {
     digests: Vec<u64>,
     worst: Worst,
+    targets: Targets,
+    findings: Findings,
     /// The last snapshot: after 900 samples, else that of the start.
     snapshot: Snapshot,
     slowest: f64,
@@ -31,12 +43,15 @@ struct Course {
 fn course(scenario: &Scenario) -> Result<(Course, StopReason), ScenarioError> {
     let begin = Instant::now();
     let mut run = Run::new(scenario)?;
-    println!("  start found in {:.2} s", begin.elapsed().as_secs_f64());
-    let (mut digests, mut worst, mut slowest) = (vec![], Worst::default(), 0.0_f64);
+    println!("  start found in {:.2} s, {} solver steps", begin.elapsed().as_secs_f64(), run.solver_steps());
+    let (mut digests, mut worst, mut slowest) = (vec![], Worst::default(), begin.elapsed().as_secs_f64());
+    let (mut targets, mut judge) = (Targets::default(), Judge::new(scenario));
     loop {
         let begin = Instant::now();
         let Some(sample) = run.next_sample()? else { break };
         worst.take(scenario, &sample);
+        targets.take(scenario, &sample);
+        judge.take(&sample);
         digests.push(digest(&sample));
         slowest = slowest.max(begin.elapsed().as_secs_f64());
     }
@@ -47,7 +62,8 @@ fn course(scenario: &Scenario) -> Result<(Course, StopReason), ScenarioError> {
     let (slip, _) = summary.slip.unwrap();
     assert_eq!(slip.share_of(Slip::NOTICED), worst.slip, "the greatest slip of the summary is that of the samples");
     assert!(summary.sliding_since.is_some() || summary.standing.is_some_and(|end| !end.slip.exceeds(Slip::GREATEST)));
-    Ok((Course { digests, worst, snapshot: run.snapshot().clone(), slowest }, summary.reason))
+    let (snapshot, findings) = (run.snapshot().clone(), judge.findings());
+    Ok((Course { digests, worst, targets, findings, snapshot, slowest }, summary.reason))
 }
 
 #[test]
@@ -55,29 +71,44 @@ fn random_worlds_keep_the_promises_of_every_sample_and_repeat_to_the_bit() {
     let environment = |name: &str| std::env::var(name).ok().map(|text| text.parse::<u64>().unwrap());
     let (count, first) =
         (environment("CONTRAPPOSTO_WORLDS").unwrap_or(WORLDS), environment("CONTRAPPOSTO_SEED").unwrap_or(1));
-    let (mut held, mut refused, mut slid, mut slow) = (0, 0, 0, 0);
+    let mut bits = std::env::var_os("CONTRAPPOSTO_DIGESTS").map(|name| std::fs::File::create(name).unwrap());
+    let (mut held, mut refused, mut slid, mut slow, mut all) = (0, 0, 0, 0, Findings::default());
     for seed in first..first + count {
-        let text = world::random(&mut Random::seed_from_u64(seed));
-        println!("seed {seed}");
-        let scenario = read_scenario("world.toml", text.as_bytes(), None)
-            .unwrap_or_else(|error| panic!("seed {seed}: {:?}\n{text}", miette::Report::new(error)));
+        let world = World::random(&mut Random::seed_from_u64(seed));
+        println!("seed {seed}: {:?}", world.body.kind);
+        let scenario = world.scenario().unwrap_or_else(|error| panic!("seed {seed}: {error}\n{}", world.text));
         match course(&scenario) {
             // A world in which nothing holds the body is refused by name.
             Err(ScenarioError::CannotStand(_) | ScenarioError::Falls(_)) => refused += 1,
-            Err(other) => panic!("seed {seed}: {other}\n{text}"),
+            Err(other) => panic!("seed {seed}: {other}\n{}", world.text),
             Ok((course, reason)) => {
                 held += 1;
                 slid += u64::from(reason == StopReason::Slid);
                 slow += u64::from(course.slowest > SLOW);
-                course.worst.is_held(&format!("seed {seed}, slowest step {:.2} s", course.slowest));
-                repeats(&scenario, &course, seed);
+                let name = format!("seed {seed}, slowest step {:.2} s", course.slowest);
+                course.worst.is_held(&name);
+                course.targets.are_kept(&name);
+                course.keeps_what_relief_promises(&name);
+                all.add(&course.findings);
+                repeats(&world.with_threads(&scenario), &course, seed);
+                if let Some(file) = &mut bits {
+                    writeln!(file, "{seed} {:?}", course.digests).unwrap();
+                }
             }
         }
     }
     println!(
-        "{count} worlds: {held} ran ({slid} of them slid, {slow} had a step over {SLOW} s), {refused} cannot stand"
+        "{count} worlds: {held} ran ({slid} of them slid, {slow} had a step over {SLOW} s), {refused} cannot stand; {all:?}"
     );
     assert!(held >= count / 2, "the generator makes worlds in which bodies stand");
+}
+
+impl Course {
+    /// No goal is taken up again, and no step of a relief raises effort above its factor.
+    fn keeps_what_relief_promises(&self, name: &str) {
+        let Findings { violations, wrong_attempts, efforts_above, .. } = self.findings;
+        assert_eq!((violations, wrong_attempts, efforts_above), (0, 0, 0), "{name}: {:?}", self.findings);
+    }
 }
 
 /// Random scenarios that once took up to 22 s of processor: no step, nor the start, takes 10 s, and all repeat to the bit.
@@ -113,7 +144,7 @@ fn slow_worlds_take_less_than_ten_seconds_of_processor_a_step() {
     }
 }
 
-/// A second run, and one from the snapshot, show the same bits.
+/// A second run of the scenario, and one from the snapshot, show the same bits.
 fn repeats(scenario: &Scenario, course: &Course, seed: u64) {
     for mut run in [Run::new(scenario).unwrap(), Run::resume(scenario, course.snapshot.clone()).unwrap()] {
         let first = run.snapshot().samples as usize;

@@ -140,6 +140,11 @@ impl<'a> Judge<'a> {
             }
         }
         self.strategies = sample.strategies.to_vec();
+        // So does a support that is put elsewhere.
+        if sample.stepping {
+            self.courses.iter_mut().for_each(Course::free);
+            self.efforts.1 = f64::INFINITY;
+        }
     }
 
     /// Follows the thresholds of fatigue; a group that has rested may take up again what it had left.
