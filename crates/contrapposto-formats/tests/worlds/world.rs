@@ -45,14 +45,13 @@ impl World {
         let sits = chance(random, 0.2);
         posture(&mut text, sits, random);
         supports(&mut text, sits, &body, random);
-        if !body.is_file() && chance(random, 0.3) {
-            thing(&mut text, sits, random);
-        }
+        let has_thing = !body.is_file() && chance(random, 0.3);
+        let rests = if has_thing { thing(&mut text, sits, random) } else { None };
         for _ in 0..random.random_range(0..3) {
             load(&mut text, random);
         }
         let tasks = random.random_range(0..4);
-        let points: Vec<usize> = (1..=tasks).filter(|_| task(&mut text, random)).collect();
+        let points: Vec<usize> = (1..=tasks).filter(|_| task(&mut text, rests, random)).collect();
         text += "[[task]]\nkind = \"effort\"\n";
         let strategies = ["active", "passive"];
         writeln!(text, "[strategy]\nkind = \"{}\"", one_of(random, &strategies)).unwrap();
@@ -151,15 +150,17 @@ fn supports(text: &mut String, sits: bool, body: &Body, random: &mut Random) {
     }
 }
 
-/// A table or counter before the body, on which a hand may rest; a wall; or a block beside the body.
-fn thing(text: &mut String, sits: bool, random: &mut Random) {
+/// A table or counter before the body, on which a hand may rest; a wall; or a block beside the body. The hand that may rest: it has no task.
+fn thing(text: &mut String, sits: bool, random: &mut Random) -> Option<&'static str> {
     match random.random_range(0..4) {
         0 | 1 => {
             let (name, low, high) = if sits { ("table", 0.68, 0.8) } else { ("counter", 0.75, 1.05) };
             let (height, edge) = (random.random_range(low..high), random.random_range(0.2..0.4));
             writeln!(text, "[[{name}]]\nheight_m = {height:.3}\nedge_m = {edge:.3}").unwrap();
             if chance(random, 0.7) {
-                writeln!(text, "may_carry = [\"{}_hand\"]", one_of(random, &["left", "right"])).unwrap();
+                let left = chance(random, 0.5);
+                writeln!(text, "may_carry = [\"{}_hand\"]", if left { "left" } else { "right" }).unwrap();
+                return Some(if left { "hand_l" } else { "hand_r" });
             }
         }
         2 => {
@@ -176,6 +177,7 @@ fn thing(text: &mut String, sits: bool, random: &mut Random) {
             .unwrap();
         }
     }
+    None
 }
 
 /// A weight, or a force in any direction.
@@ -192,18 +194,20 @@ fn load(text: &mut String, random: &mut Random) {
 }
 
 /// A point, an orientation as at the start, or the centre of mass over the feet. Whether it is a point, whose target an event may move.
-fn task(text: &mut String, random: &mut Random) -> bool {
+fn task(text: &mut String, rests: Option<&str>, random: &mut Random) -> bool {
     let kind = random.random_range(0..3);
     match kind {
         0 => {
             let (x, y, z) =
                 (random.random_range(0.1..0.6), random.random_range(0.7..1.7), random.random_range(-0.4..0.4));
             let hand = one_of(random, &["hand_r", "hand_l"]);
+            let hand = if rests == Some(hand) { if hand == "hand_r" { "hand_l" } else { "hand_r" } } else { hand };
             writeln!(text, "[[task]]\nkind = \"point\"\nsegment = \"{hand}\"\ntarget_m = [{x:.3}, {y:.3}, {z:.3}]")
                 .unwrap();
         }
         1 => {
             let segment = one_of(random, &SEGMENTS);
+            let segment = if rests == Some(segment) { "head" } else { segment };
             writeln!(text, "[[task]]\nkind = \"orientation\"\nsegment = \"{segment}\"\ntarget = \"start\"").unwrap();
         }
         _ => text.push_str("[[task]]\nkind = \"center_of_mass\"\n"),

@@ -44,9 +44,8 @@ impl BodyMotion<'_> {
             self.forget();
             return stands.ok_or(ScenarioError::CannotStand(missing));
         }
-        // A task that is missed may need legs that stand in another way: with all joints free a search takes longer.
-        let work = SEARCH_BUDGET_OF_STEP * if missed { 2 } else { 1 };
-        let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: !missed };
+        // A task that is missed may need legs that stand in another way.
+        let budget = Budget { scattered: SCATTERED_AT_THE_START, work: SEARCH_BUDGET_OF_STEP, carriers_stay: !missed };
         let Searched { found, minima, work, cut } = self.easiest(&posture, &[], budget)?;
         let (posture, steps) = self.settled(found.unwrap_or(posture))?;
         self.forget();
@@ -88,8 +87,8 @@ impl BodyMotion<'_> {
             aim: Aim::Least(&[]),
         };
         let locked: Vec<usize> = self.scenario.locked_rates().collect();
-        // An eighth of the usual work (assumed): a scenario that cannot stand is answered within a second.
-        let work = SEARCH_BUDGET_OF_STEP / 8;
+        // A quarter of the usual work (assumed): a scenario that cannot stand is answered within a second.
+        let work = SEARCH_BUDGET_OF_STEP / 4;
         let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: false };
         let Searched { found, minima, work, cut } =
             search(self.scenario, now, (&self.supports, &self.limits), &locked, budget).ok()?;

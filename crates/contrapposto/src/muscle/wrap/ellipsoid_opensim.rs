@@ -147,12 +147,8 @@ struct Section {
 impl Section {
     /// Length of the section as that of its pieces, on the near or on the far side; the points next to both ends, where there are any.
     fn length(&self, far: bool) -> (f64, Option<[V; 2]>) {
-        let chord = (self.first - self.second).norm();
-        let straight = chord / self.factor;
-        // Not a number below one piece; at least one piece otherwise.
-        if straight.is_nan() || straight < ELLIPSOID_PIECE {
-            return (chord, None);
-        }
+        let straight = (self.first - self.second).norm() / self.factor;
+        // Of none, and of one, the length is that of the chord.
         let pieces = ((straight / ELLIPSOID_PIECE) as u32).min(ELLIPSOID_PIECES);
         let axis = self.normal.icamax();
         let mut hub = V::zeros();
