@@ -3,20 +3,23 @@
 //! The promises: no input ends in a panic; what is read gives finite numbers or an error; a model that a writer takes is read again
 //! with the same torques.
 
+use std::sync::LazyLock;
+
 use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::muscle::{PathGeometry, PathRule};
 use contrapposto::posture_solver::Engine;
 use contrapposto::simulation::{Run, Scenario, Snapshot, Tables};
-use contrapposto_formats::loads::external_loads;
+use contrapposto_formats::loads::{GroundReaction, external_loads};
 use contrapposto_formats::markers::{marker_set, read_force_plates, read_markers, scale_setup, tracking_tasks};
-use contrapposto_formats::motion::read_table;
-use contrapposto_formats::rigs::{Rig, read_bvh, read_gltf};
+use contrapposto_formats::motion::{Units, postures, read_table};
+use contrapposto_formats::rigs::{Rig, read_bvh, read_gltf, read_rig_names};
 use contrapposto_formats::write;
 use contrapposto_formats::{
-    Distribution, Template, minimize_line, overlay, read_model, read_plan, read_pose, read_relax, read_scenario,
+    minimize_line, overlay, read_model, read_plan, read_pose, read_relax, read_scenario, scenario_model,
 };
+use contrapposto_sweep::Study;
 
 /// Samples of a run that are computed.
 const SAMPLES: usize = 4;
@@ -69,7 +72,10 @@ fn torques_of(bytes: &[u8]) -> Option<(Model, Vec<f64>)> {
     Some((imported.model, torques))
 }
 
-/// A table of motion.
+/// The right arm of the built-in adult.
+static ARM: LazyLock<Model> = LazyLock::new(|| adult(&Adult::right_arm()).expect("it is built in"));
+
+/// A table of motion, the postures of an arm in it, and the forces on a hand.
 pub fn motion(bytes: &[u8]) {
     let Ok(table) = read_table("motion.mot", bytes) else { return };
     finite("time", &table.times);
@@ -77,6 +83,17 @@ pub fn motion(bytes: &[u8]) {
         assert_eq!(row.len(), table.columns.len());
         finite("row", row);
     }
+    for units in [Units::FromFile, Units::Degrees, Units::Radians] {
+        for (_, posture) in postures(&table, "motion.mot", bytes, &ARM, units).into_iter().flat_map(|read| read.postures) {
+            finite("posture", posture.values());
+        }
+    }
+    let Ok(ground) = GroundReaction::read("motion.mot", bytes, &["hand_r"], &ARM) else { return };
+    let (kinematics, mut loads) = (Kinematics::new(&ARM), vec![]);
+    for time in ground.span().into_iter().flat_map(|(first, last)| [first, 0.5 * first + 0.5 * last, last]) {
+        ground.loads(time, &ARM, &kinematics, &mut loads);
+    }
+    loads.iter().for_each(|load| finite("point of a load", load.point.as_slice()));
 }
 
 /// Markers of a trial (`.trc`, C3D) and its force plates.
@@ -98,8 +115,12 @@ pub fn markers(bytes: &[u8]) {
     }
 }
 
-/// A rig and its motion, BVH or glTF.
+/// A rig and its motion, BVH or glTF; the names of a rig's joints.
 pub fn rig(bytes: &[u8]) {
+    static RIG: LazyLock<Rig> = LazyLock::new(|| {
+        read_bvh("two.bvh", include_bytes!("../corpus/rig/two.bvh")).expect("it is in order")
+    });
+    let _ = read_rig_names("names.toml", bytes, &RIG);
     read_bvh("rig.bvh", bytes).iter().for_each(finite_rig);
     read_gltf("rig.glb", bytes).iter().for_each(finite_rig);
 }
@@ -130,26 +151,33 @@ pub fn setup(bytes: &[u8]) {
     let _ = external_loads(bytes);
 }
 
-/// A plan of a sweep: where its parameters are keys of the base, the scenario with values of its lists is read.
+/// A plan of a sweep: where its parameters are keys of the base, the scenario of its last row is read.
 pub fn plan(bytes: &[u8]) {
     let Ok(plan) = read_plan("plan.toml", bytes) else { return };
     assert!(plan.rows_of(plan.parts() - 1).end == plan.rows, "the parts are all rows");
     plan.mixing.iter().flatten().for_each(|row| finite("mixing", row));
-    let keys = plan.parameters.iter().map(|parameter| parameter.key.as_str());
-    let Ok(template) = Template::new("scenario.toml", ONE_JOINT.as_bytes(), keys) else { return };
-    let first = |distribution: &Distribution| match distribution {
-        Distribution::List(values) => values.first().cloned(),
-        _ => None,
-    };
-    let values: Option<Vec<_>> = plan.parameters.iter().map(|parameter| first(&parameter.distribution)).collect();
-    if let Some(values) = values {
-        let _ = read_scenario("scenario.toml", template.text(&values).as_bytes(), None);
+    if let Ok(study) = Study::new("scenario.toml", ONE_JOINT.as_bytes(), &plan) {
+        let last = study.rows() - 1;
+        finite("point", &study.point(last));
+        let _ = read_scenario("scenario.toml", study.scenario(last).as_bytes(), None);
+    }
+}
+
+/// A part of a sweep that was kept: its bytes are those of the part, or it is none.
+pub fn part(bytes: &[u8]) {
+    static STUDY: LazyLock<Study> = LazyLock::new(|| {
+        let plan = read_plan("lists.toml", include_bytes!("../corpus/plan/lists.toml")).expect("it is in order");
+        Study::new("scenario.toml", ONE_JOINT.as_bytes(), &plan).expect("it is in order")
+    });
+    if let Some(answers) = STUDY.read(0, bytes) {
+        assert_eq!(answers.len(), STUDY.rows_of(0).len());
     }
 }
 
 /// A scenario: the first samples of its run, where that has no supports and no tasks. The search for the start of a whole body takes
 /// seconds; random worlds (`tests/worlds.rs`) are its attack.
 pub fn scenario(bytes: &[u8]) {
+    let _ = scenario_model("scenario.toml", bytes);
     let Ok(scenario) = read_scenario("scenario.toml", bytes, None) else { return };
     finite("start", scenario.start.values());
     if scenario.has_supports_or_tasks() {
@@ -263,8 +291,20 @@ pub fn seed_of_snapshot() -> String {
     serde_json::to_string(run.snapshot()).expect("a snapshot is JSON")
 }
 
+/// The part of a sweep: `corpus/part/lists.parquet`.
+pub fn seed_of_part() -> Vec<u8> {
+    let plan = read_plan("lists.toml", include_bytes!("../corpus/plan/lists.toml")).expect("it is in order");
+    let study = Study::new("scenario.toml", ONE_JOINT.as_bytes(), &plan).expect("it is in order");
+    study.part(0, || true, || ()).expect("nothing stops it")
+}
+
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn the_seed_of_parts_is_that_of_today() {
+        assert_eq!(super::seed_of_part(), include_bytes!("../corpus/part/lists.parquet"));
+    }
+
     #[test]
     fn the_seed_of_snapshots_is_that_of_today() {
         assert_eq!(super::seed_of_snapshot(), include_str!("../corpus/snapshot/start.json").trim());

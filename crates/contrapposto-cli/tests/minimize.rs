@@ -487,6 +487,14 @@ fn a_bad_line_is_answered_with_its_number_and_the_rest_goes_on() {
 }
 
 #[test]
+fn letters_that_a_terminal_obeys_are_written_out_in_an_error() {
+    let run = contrapposto(["minimize"]).stdin("{\"a\u{9b}31m\u{202e}\": 1}\n").run();
+    assert!(run.stdout.contains(r"unknown field `a\u009b31m\u202e`"), "{}", run.stdout);
+    let answer = &json_lines(&run)[0];
+    assert!(answer["error"].as_str().unwrap().contains("a\u{9b}31m\u{202e}"), "it is JSON of the same text");
+}
+
+#[test]
 fn a_byte_order_mark_is_no_part_of_the_first_line() {
     let run = contrapposto(["minimize"]).stdin(format!("\u{feff}{EXAMPLE}\n")).run();
     assert_eq!(run.code, 0, "{}", run.stdout);

@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 
 use contrapposto::simulation::Tables;
-use contrapposto_formats::{MOST_LINE_BYTES, minimize_line};
+use contrapposto_formats::{MOST_LINE_BYTES, escaped, minimize_line};
 use serde::Serialize;
 
 use crate::args::MinimizeArgs;
@@ -76,7 +76,8 @@ pub(crate) fn minimize(args: &MinimizeArgs) -> Result<(), Fail> {
 
 fn answer(out: &mut impl Write, value: &impl Serialize) -> Result<(), Fail> {
     let text = serde_json::to_string(value).map_err(|error| Fail::job("JSON", error))?;
-    writeln!(out, "{text}").map_err(stdout_failed)
+    // A name that a problem has, and should not, may have letters that a terminal obeys.
+    writeln!(out, "{}", escaped(&text)).map_err(stdout_failed)
 }
 
 /// Reads past the rest of an overlong line without keeping it.
