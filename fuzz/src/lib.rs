@@ -84,7 +84,9 @@ pub fn motion(bytes: &[u8]) {
         finite("row", row);
     }
     for units in [Units::FromFile, Units::Degrees, Units::Radians] {
-        for (_, posture) in postures(&table, "motion.mot", bytes, &ARM, units).into_iter().flat_map(|read| read.postures) {
+        for (_, posture) in
+            postures(&table, "motion.mot", bytes, &ARM, units).into_iter().flat_map(|read| read.postures)
+        {
             finite("posture", posture.values());
         }
     }
@@ -117,9 +119,8 @@ pub fn markers(bytes: &[u8]) {
 
 /// A rig and its motion, BVH or glTF; the names of a rig's joints.
 pub fn rig(bytes: &[u8]) {
-    static RIG: LazyLock<Rig> = LazyLock::new(|| {
-        read_bvh("two.bvh", include_bytes!("../corpus/rig/two.bvh")).expect("it is in order")
-    });
+    static RIG: LazyLock<Rig> =
+        LazyLock::new(|| read_bvh("two.bvh", include_bytes!("../corpus/rig/two.bvh")).expect("it is in order"));
     let _ = read_rig_names("names.toml", bytes, &RIG);
     read_bvh("rig.bvh", bytes).iter().for_each(finite_rig);
     read_gltf("rig.glb", bytes).iter().for_each(finite_rig);
