@@ -88,8 +88,8 @@ impl BodyMotion<'_> {
             aim: Aim::Least(&[]),
         };
         let locked: Vec<usize> = self.scenario.locked_rates().collect();
-        // A quarter of the usual work (assumed): a scenario that cannot stand is answered within a second.
-        let work = SEARCH_BUDGET_OF_STEP / 4;
+        // An eighth of the usual work (assumed): a scenario that cannot stand is answered within a second.
+        let work = SEARCH_BUDGET_OF_STEP / 8;
         let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: false };
         let Searched { found, minima, work, cut } =
             search(self.scenario, now, (&self.supports, &self.limits), &locked, budget).ok()?;
