@@ -138,8 +138,9 @@ pub struct StepText {
     pub segment: String,
     /// `elsewhere`, `put_down` or `taken_off`.
     pub kind: &'static str,
-    /// The coordinate whose tired group asked for relief.
-    pub relieves: String,
+    /// The coordinate whose tired group asked for relief; absent of a hand that was taken up because it kept the body from a task.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relieves: Option<String>,
     /// Time at which the body began to shift its weight, s.
     pub begin_s: f64,
     /// Time at which the body had taken the new posture, s.
@@ -284,7 +285,7 @@ impl StepText {
         Self {
             segment: model.segments()[scenario.supports[step.support].segment].name.clone(),
             kind: step.kind.word(),
-            relieves: model.coordinates()[step.coordinate].name.clone(),
+            relieves: step.relieves.map(|(coordinate, _)| model.coordinates()[coordinate].name.clone()),
             begin_s: step.time.0,
             end_s: step.time.1,
             from_m: step.place.0,

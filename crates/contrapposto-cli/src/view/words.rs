@@ -2,6 +2,7 @@
 
 use contrapposto::model::Model;
 pub(crate) use contrapposto::model::{plain_group_name as group, plain_name as plain};
+use contrapposto::simulation::FootStep;
 pub(crate) use contrapposto::verdict::how_long;
 
 use super::axes::visible;
@@ -27,6 +28,14 @@ pub(crate) fn moment_in_words(seconds: f64) -> String {
         _ if seconds < 597.0 => format!("{:.2}\u{a0}min", seconds / 60.0),
         _ if seconds < 5970.0 => format!("{:.1}\u{a0}min", seconds / 60.0),
         _ => format!("{:.3}\u{a0}h", seconds / 3600.0),
+    }
+}
+
+/// `to relieve right hip flexion`: what a step was for.
+pub(crate) fn why(model: &Model, step: &FootStep) -> String {
+    match step.relieves {
+        Some((coordinate, _)) => format!("to relieve {}", plain(&model.coordinates()[coordinate].name)),
+        None => "to come nearer to a task".to_owned(),
     }
 }
 

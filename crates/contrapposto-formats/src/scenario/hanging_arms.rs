@@ -28,12 +28,12 @@ const NEUTRAL: f64 = 20.0 * std::f64::consts::PI / 180.0;
 const ARMS_HANG_NOTE: &str = "no task names an arm that carries nothing; that it hangs was added just above effort (`arms_hang = false` leaves it out)";
 
 /// Adds the task for arms that hang at the start and that no task, no support and no load names, if the file asks for it or leaves it to the
-/// default: that of the built-in adult on supports. `resting` are segments that may be put down somewhere. Returns a note for the reader where
+/// default: that of the built-in adult on supports. An arm whose hand a rest may carry hangs until it does. Returns a note for the reader where
 /// the file says nothing.
 pub(super) fn add_hanging_arms(
     stage: &Stage<'_>,
     text: &ScenarioText,
-    (loads, resting): (&[Load], &[usize]),
+    loads: &[Load],
     levels: &mut Vec<Level>,
 ) -> Result<Option<&'static str>, InputError> {
     let Stage { at, model, supports, .. } = *stage;
@@ -45,7 +45,6 @@ pub(super) fn add_hanging_arms(
     let is_named = |segment: usize| {
         let tasks = levels.iter().flat_map(|level| &level.tasks.tasks);
         supports.contains(&segment)
-            || resting.contains(&segment)
             || loads.iter().any(|load| load.segment == segment)
             || tasks.into_iter().any(|task| task.concerns(model, segment))
     };

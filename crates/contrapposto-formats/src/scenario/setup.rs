@@ -89,7 +89,7 @@ impl Setup {
             }
             Err(error) => Err(error),
         };
-        let resting = standing.split_off(before);
+        standing.truncate(before);
         let Start { posture: start, kinematics } = start;
         if let Ok(supports) = &mut supports {
             set_places(at, (&model, &kinematics), &texts[..before], supports)?;
@@ -98,7 +98,7 @@ impl Setup {
         let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: &standing, patches };
         let mut levels: Vec<Level> = world.levels(&stage).into_iter().chain(levels(&stage, &text.task)?).collect();
         rest::check_free(at, &model, &rests, &levels)?;
-        notes.extend(add_tasks(&stage, text, (&loads, &resting), &mut levels)?);
+        notes.extend(add_tasks(&stage, text, &loads, &mut levels)?);
         notes.extend(far_targets(&stage, &levels));
         let texts: Vec<&ObstacleText> = text.obstacle.iter().chain(&world.obstacles).collect();
         let obstacles = obstacles(at, &texts)?;
@@ -164,13 +164,13 @@ impl Setup {
 fn add_tasks(
     stage: &Stage<'_>,
     text: &ScenarioText,
-    (loads, resting): (&[Load], &[usize]),
+    loads: &[Load],
     levels: &mut Vec<Level>,
 ) -> Result<Vec<String>, InputError> {
     // The others find their places above the task of effort.
     let effort = add_least_effort(stage, text, levels)?;
     let upright = add_upright(stage, text, levels)?;
-    let arms = add_hanging_arms(stage, text, (loads, resting), levels)?;
+    let arms = add_hanging_arms(stage, text, loads, levels)?;
     add_shoulder_rhythm(stage, text, levels)?;
     Ok([upright, arms, effort].into_iter().flatten().map(str::to_owned).collect())
 }

@@ -127,11 +127,16 @@ impl<'a> BodyMotion<'a> {
     /// The levels that ask for something while the supports with these numbers are in use.
     pub(super) fn levels_with(&self, in_use: &[usize]) -> Vec<PriorityLevel> {
         let mut levels = self.engine.levels().to_vec();
-        for (goal, &level) in self.goals.iter().zip(&self.task_levels) {
+        for (goal, level) in self.levels_of_goals() {
             levels[level] = self.scenario.goal_with(goal, in_use);
         }
         levels.retain(PriorityLevel::asks);
         levels
+    }
+
+    /// The scenario's tasks, each with the number of its level.
+    pub(super) fn levels_of_goals(&self) -> impl Iterator<Item = (&PriorityLevel, usize)> {
+        self.goals.iter().zip(self.task_levels.iter().copied())
     }
 
     pub(super) fn scenario(&self) -> &'a Scenario {

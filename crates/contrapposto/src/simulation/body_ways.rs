@@ -5,7 +5,8 @@ use std::cell::Cell;
 use super::ScenarioError;
 use super::body_motion::{BodyMotion, engine, is_effort};
 use super::easiest::{
-    Budget, MOST_SLIP, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference, is_better, search,
+    Budget, MOST_SLIP, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, WORTH_NEARING, easiest, first_difference,
+    is_better, search,
 };
 use super::offer::Offer;
 use super::path::{Path, Planner};
@@ -101,6 +102,18 @@ impl BodyMotion<'_> {
     fn errors_above_effort(&self) -> Vec<f64> {
         let levels = self.engine.levels().iter().enumerate().take_while(|(_, level)| !is_effort(level));
         levels.filter(|(_, level)| level.asks()).map(|(i, _)| self.engine.error(i)).collect()
+    }
+
+    /// Errors of the tasks above effort and above limbs that hang, the reliefs left out, where one of them is so great that a posture nearer to
+    /// it is worth a motion. These levels stay the same when a rest is put down or taken off.
+    pub(super) fn missed(&self) -> Option<Vec<f64>> {
+        let hangs = |goal: &PriorityLevel| goal.tasks.iter().any(|task| task.hangs(&self.model));
+        let hanging = self.levels_of_goals().filter(|(goal, _)| hangs(goal)).map(|(_, level)| level).min();
+        let levels = self.engine.levels().iter().enumerate().take_while(|(_, level)| !is_effort(level));
+        let above = levels.take_while(|(i, _)| hanging.is_none_or(|hanging| *i < hanging));
+        let tasks = above.filter(|(_, level)| level.asks() && level.half_spaces.is_empty());
+        let errors: Vec<f64> = tasks.map(|(i, _)| self.engine.error(i)).collect();
+        errors.iter().any(|error| *error > WORTH_NEARING).then_some(errors)
     }
 
     /// Whether a solve of all levels leaves one above effort unreached.

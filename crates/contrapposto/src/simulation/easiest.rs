@@ -31,7 +31,7 @@ const WORTH_A_MOTION: f64 = 0.98;
 /// the distance from which on a verdict calls a target missed.
 pub(super) const UNREACHED: f64 = 5e-4;
 /// A posture that is nearer to a task by more is worth a motion, m or rad. Assumed: the distance from which on a verdict calls a target missed.
-const WORTH_NEARING: f64 = 5e-3;
+pub(super) const WORTH_NEARING: f64 = 5e-3;
 /// A posture whose supports are farther off their places is none, m and rad together.
 pub(super) const MOST_SLIP: f64 = 1e-5;
 

@@ -1,4 +1,5 @@
-//! Decides whether a support is put elsewhere, put down or taken off to relieve a tired muscle group.
+//! Decides whether a support is put elsewhere, put down or taken off to relieve a tired muscle group, and whether a hand that rests is taken off
+//! because it keeps the body from a task.
 //!
 //! A step is a relief like the others: its goal is the one of the tables. The search of [`crate::equilibria`] chooses place and posture
 //! together. A posture counts where the tired group works less, its joint is nearer to its goal (of a step; for a hand that is put down or
@@ -11,7 +12,7 @@ use nalgebra::Vector3;
 
 use super::ScenarioError;
 use super::body_motion::{BodyMotion, is_effort};
-use super::easiest::{Budget, Now, Searched, search};
+use super::easiest::{Budget, Now, Searched, is_better, search};
 use super::offer::Offer;
 use super::path::{Path, Planner};
 use super::rest::Rest;
@@ -42,6 +43,15 @@ pub(super) struct Tired {
     pub(super) toward: f64,
 }
 
+/// What a step is for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Purpose<'a> {
+    /// A tired muscle group works less.
+    Relief(Tired),
+    /// A task that a hand at rest keeps the body from comes nearer; the errors of the tasks, as [`BodyMotion::missed`] gives them.
+    Reach(&'a [f64]),
+}
+
 /// A step that will be taken.
 #[derive(Debug)]
 pub(super) struct PlannedStep {
@@ -49,22 +59,22 @@ pub(super) struct PlannedStep {
     pub(super) step: FootStep,
 }
 
-/// The step that relieves `tired` most, if `budget` of work shows one.
+/// The step of least effort afterwards that serves its purpose, if `budget` of work shows one.
 pub(super) fn plan_step(
     body: &mut BodyMotion<'_>,
     posture: &Posture,
-    tired: Tired,
+    purpose: Purpose<'_>,
     budget: usize,
 ) -> Result<Searched<Option<PlannedStep>>, ScenarioError> {
     let scenario = body.scenario();
     let (mut left, mut cut) = (budget, false);
     let (effort, mut found) = (body.effort(), vec![]);
-    let offers = offers(body);
+    let offers = offers(body, purpose);
     for (k, &offer) in offers.iter().enumerate() {
         let Some(changed) = Changed::by(body, posture, offer, &mut left)? else { continue };
         let mut levels = body.levels_with(&changed.numbers);
         levels.retain(|level| level.half_spaces.is_empty());
-        let (loads, aim) = (body.loads(), Aim::Ways);
+        let (loads, aim) = (body.loads(), purpose.aim());
         let now = Now { model: &body.model, posture: &changed.posture, levels: &levels, loads, effort, aim };
         let locked: Vec<usize> = scenario.locked_rates().collect();
         let work = left.saturating_sub(budget / SHARE_OF_WAYS) / (offers.len() - k);
@@ -79,15 +89,21 @@ pub(super) fn plan_step(
     for (offer, candidate) in found {
         let (support, to) = (&scenario.supports[offer.number], &candidate.relaxed.posture);
         let (before, after) = (middle(body, posture, support)?, middle(body, to, support)?);
-        let worth =
-            candidate.relaxed.effort < WORTH_A_STEP * effort && relieves(&candidate, offer.kind, posture, tired);
+        let worth = match purpose {
+            Purpose::Relief(tired) => {
+                let easier = candidate.relaxed.effort < WORTH_A_STEP * effort;
+                easier && relieves(&candidate, offer.kind, posture, tired)
+            }
+            // The effort of a posture that misses its task says nothing: it only has to be nearer.
+            Purpose::Reach(errors) => is_better(&candidate.relaxed, 0.0, errors),
+        };
         if !worth || (after - before).norm() < LEAST_SHIFT {
             continue;
         }
         if let Some(path) = body.way(posture, to, Some(offer), &mut left) {
-            let (coordinate, side, kind) = (tired.coordinate, tired.side, offer.kind);
+            let (relieves, kind) = (purpose.relieves(), offer.kind);
             let (place, effort) = ((before.into(), after.into()), (effort, candidate.relaxed.effort));
-            let step = FootStep { support: offer.number, kind, coordinate, side, time: (0.0, 0.0), place, effort };
+            let step = FootStep { support: offer.number, kind, relieves, time: (0.0, 0.0), place, effort };
             return Ok(Searched { found: Some(PlannedStep { path, step }), minima: vec![], work: budget - left, cut });
         }
     }
@@ -95,8 +111,27 @@ pub(super) fn plan_step(
     Ok(Searched { found: None, minima: vec![], work: budget - left, cut })
 }
 
-/// The changes that the supports allow: those whose place is free may be put elsewhere, rests may be put down or taken off.
-fn offers(body: &BodyMotion<'_>) -> Vec<Offer> {
+impl Purpose<'_> {
+    /// The coordinate and the muscle group that are relieved, if any.
+    fn relieves(self) -> Option<(usize, Side)> {
+        if let Self::Relief(tired) = self { Some((tired.coordinate, tired.side)) } else { None }
+    }
+
+    /// The postures that the search is for.
+    fn aim(self) -> Aim<'static> {
+        match self {
+            Self::Relief(_) => Aim::Ways,
+            Self::Reach(_) => Aim::Least(&[]),
+        }
+    }
+}
+
+/// The changes that the supports allow: those whose place is free may be put elsewhere, rests may be put down or taken off. For a task to come
+/// nearer, rests may be taken off.
+fn offers(body: &BodyMotion<'_>, purpose: Purpose<'_>) -> Vec<Offer> {
+    if let Purpose::Reach(_) = purpose {
+        return body.offers_of_rests().filter(|offer| offer.kind == StepKind::TakenOff).collect();
+    }
     let free = |number: &&usize| body.scenario().supports[**number].place != Place::Fixed;
     let elsewhere = body.in_use.iter().filter(free).map(|&number| Offer { number, kind: StepKind::Elsewhere });
     elsewhere.chain(body.offers_of_rests()).collect()

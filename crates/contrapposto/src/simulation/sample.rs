@@ -190,10 +190,8 @@ pub struct FootStep {
     pub support: usize,
     /// The change.
     pub kind: StepKind,
-    /// The coordinate whose relief asked for it, and its tired group.
-    pub coordinate: usize,
-    /// See `coordinate`.
-    pub side: Side,
+    /// The coordinate whose relief asked for it, and its tired group; `None` of a hand that was taken up because it kept the body from a task.
+    pub relieves: Option<(usize, Side)>,
     /// Times at which the body began to shift its weight, and at which it had taken the new posture, s.
     pub time: (f64, f64),
     /// Middle of the patch before and after, ground, m.

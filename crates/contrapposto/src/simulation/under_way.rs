@@ -1,7 +1,9 @@
-//! Follows a planned way sample by sample, and looks for one: a step that relieves a tired group, or an easier posture at rest.
+//! Follows a planned way sample by sample, and looks for one: a step that relieves a tired group, a hand taken up that keeps the body from a task,
+//! or an easier posture at rest.
 
+use super::body_motion::BodyMotion;
 use super::easiest::{Budget, Eased, SEARCH_BUDGET, SEARCH_BUDGET_OF_STEP, Searched};
-use super::foot_step::{PlannedStep, Tired, plan_step};
+use super::foot_step::{PlannedStep, Purpose, Tired, plan_step};
 use super::{FootStep, ScenarioError, Simulation, StepKind};
 use crate::hybrid::Decision;
 use crate::model::Side;
@@ -93,14 +95,36 @@ impl Simulation<'_> {
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         self.state.step_tried[i] = true;
         let tired = Tired { coordinate: i, side, load: self.record.load[i], toward };
-        let Searched { found, work, cut, .. } = plan_step(body, &self.state.posture, tired, budget)?;
-        self.count_search(work, cut);
-        if let Some(PlannedStep { path, mut step }) = found {
+        let planned = plan_step(body, &self.state.posture, Purpose::Relief(tired), budget)?;
+        self.begin(planned);
+        Ok(())
+    }
+
+    /// Looks for a hand at rest that keeps the body from a task which it could come nearer to with the hand taken up. A hand that a relief has put
+    /// down since the last event stays.
+    fn look_for_reach(&mut self) -> Result<(), ScenarioError> {
+        let Some(event) = self.scenario.events[..self.state.next_event].last() else { return Ok(()) };
+        let mut since = self.state.foot_steps.iter().rev().take_while(|step| step.time.0 >= event.time);
+        let rests = |number: &usize| self.scenario.rests.iter().any(|rest| rest.support == *number);
+        if since.any(|step| step.relieves.is_some()) || !self.state.in_use.iter().any(rests) {
+            return Ok(());
+        }
+        let Some(errors) = self.motion.body().and_then(BodyMotion::missed) else { return Ok(()) };
+        let Some(budget) = self.search_budget() else { return Ok(()) };
+        let Some(body) = self.motion.body_mut() else { return Ok(()) };
+        let planned = plan_step(body, &self.state.posture, Purpose::Reach(&errors), budget)?;
+        self.begin(planned);
+        Ok(())
+    }
+
+    /// Begins the step that a search has found, if any.
+    fn begin(&mut self, planned: Searched<Option<PlannedStep>>) {
+        self.count_search(planned.work, planned.cut);
+        if let Some(PlannedStep { path, mut step }) = planned.found {
             step.time.0 = self.state.steps as f64 * self.scenario.run.step;
             self.state.foot_steps.push(step);
             self.state.path = Some(path);
         }
-        Ok(())
     }
 
     /// Looks for an easier posture once the body has come to rest.
@@ -117,9 +141,16 @@ impl Simulation<'_> {
             self.state.searched_here = true;
             return Ok(());
         }
+        if self.search_budget().is_none() {
+            return Ok(());
+        }
+        self.state.searched_here = true;
+        self.look_for_reach()?;
+        if self.state.path.is_some() {
+            return Ok(());
+        }
         let Some(mut budget) = self.search_budget() else { return Ok(()) };
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
-        self.state.searched_here = true;
         let budget_of_search = Budget { scattered: 0, work: budget, carriers_stay: true };
         let Searched { found, minima, work, cut } =
             body.easiest(&self.state.posture, &self.state.minima, budget_of_search)?;

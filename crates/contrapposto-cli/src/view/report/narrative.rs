@@ -10,7 +10,7 @@ use crate::view::excerpt::RunExcerpt;
 use crate::view::frame::Frame;
 use crate::view::muscles::{hardest_of_run, tired, working};
 use crate::view::selection::main_coordinate;
-use crate::view::words::{how_long, percent, plain, sentence, value};
+use crate::view::words::{how_long, percent, plain, sentence, value, why};
 
 /// A pelvis that hangs more than this, degrees, is no level one.
 const LEVEL: f64 = 4.0;
@@ -210,9 +210,9 @@ impl Narrative<'_> {
             StepKind::TakenOff => "taken up again".to_owned(),
         };
         format!(
-            "At {} {support} was {what} to relieve {}: effort {:.4} before, {:.4} after.",
+            "At {} {support} was {what} {}: effort {:.4} before, {:.4} after.",
             how_long(step.time.0),
-            plain(&model.coordinates()[step.coordinate].name),
+            why(model, step),
             step.effort.0,
             step.effort.1
         )

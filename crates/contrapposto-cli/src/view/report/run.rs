@@ -19,7 +19,7 @@ use crate::view::scene::Scene;
 use crate::view::selection::{main_coordinate, shown};
 use crate::view::stage::{Stage, load_in_words};
 use crate::view::targets::missed_targets;
-use crate::view::words::{how_long, list, plain, sentence};
+use crate::view::words::{how_long, list, plain, sentence, why};
 
 /// The muscles of a run in the moments that its page shows. Nothing is judged while a support is put elsewhere.
 pub(crate) fn muscles_of_run<'a>(
@@ -110,7 +110,7 @@ fn entries(scenario: &Scenario, summary: &Summary, excerpt: &RunExcerpt, shown: 
         .iter()
         .flat_map(|event| changes(scenario, event).into_iter().map(|text| (event.time, None, text)));
     let stepped = summary.foot_steps.iter().map(|step| {
-        let joint = shown.iter().position(|&i| i == step.coordinate);
+        let joint = shown.iter().position(|&i| step.relieves.is_some_and(|(coordinate, _)| i == coordinate));
         (step.time.0, joint, step_in_words(scenario, step))
     });
     let mut entries: Vec<(f64, Option<usize>, String)> = decided.chain(changed).chain(stepped).collect();
@@ -150,15 +150,14 @@ fn changes(scenario: &Scenario, event: &contrapposto::simulation::Event) -> Vec<
 fn step_in_words(scenario: &Scenario, step: &FootStep) -> String {
     let support = plain(&scenario.model.segments()[scenario.supports[step.support].segment].name);
     let ([from_x, _, from_z], [x, _, z]) = step.place;
-    let why = plain(&scenario.model.coordinates()[step.coordinate].name);
-    let end = how_long(step.time.1);
+    let (why, end) = (why(&scenario.model, step), how_long(step.time.1));
     let change = match step.kind {
         StepKind::Elsewhere => {
             let far = 100.0 * libm::hypot(x - from_x, z - from_z);
-            format!("Step: {support} is put {far:.0} cm away, to relieve {why}; it is there at {end}")
+            format!("Step: {support} is put {far:.0} cm away, {why}; it is there at {end}")
         }
-        StepKind::PutDown => format!("{} is put down to rest, to relieve {why}; it lies at {end}", sentence(&support)),
-        StepKind::TakenOff => format!("{} is taken up again, to relieve {why}, until {end}", sentence(&support)),
+        StepKind::PutDown => format!("{} is put down to rest, {why}; it lies at {end}", sentence(&support)),
+        StepKind::TakenOff => format!("{} is taken up again, {why}, until {end}", sentence(&support)),
     };
     format!("{change}. Nobody is judged while it is in the air.")
 }

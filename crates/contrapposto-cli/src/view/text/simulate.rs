@@ -10,7 +10,7 @@ use contrapposto::verdict::error_in_words;
 use super::plain_table;
 use crate::output::ResultSet;
 use crate::view::three_axis::angles;
-use crate::view::words::{MOST_ROWS, how_long, joint, percent, plain, shares_of_all};
+use crate::view::words::{MOST_ROWS, how_long, joint, percent, plain, shares_of_all, why};
 
 /// m or rad. A task whose error is smaller counts as kept in the table of a run.
 const REACHED: f64 = 1e-3;
@@ -165,7 +165,6 @@ fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) ->
     }
     for step in &summary.foot_steps {
         let segment = plain(&segments[scenario.supports[step.support].segment].name);
-        let relieved = plain(&scenario.model.coordinates()[step.coordinate].name);
         let ([x, y, z], [to_x, to_y, to_z]) = step.place;
         let what = match step.kind {
             StepKind::Elsewhere => "put elsewhere",
@@ -174,9 +173,10 @@ fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) ->
         };
         text += &format!(
             "{segment} was {what} at {}, within {}, from ({x:.2}, {y:.2}, {z:.2}) to ({to_x:.2}, {to_y:.2}, {to_z:.2}) m, \
-             to relieve {relieved}: effort {:.4} before, {:.4} after\n",
+             {}: effort {:.4} before, {:.4} after\n",
             how_long(step.time.0),
             how_long(step.time.1 - step.time.0),
+            why(&scenario.model, step),
             step.effort.0,
             step.effort.1
         );
