@@ -34,7 +34,8 @@ impl BodyMotion<'_> {
         if missed {
             let other = self.solved(&self.without_effort()?, 0)?;
             let errors: Vec<f64> = solved.levels.iter().map(|level| level.length).collect();
-            if other.balance == Balance::Held && first_difference(&other.levels, &errors) < 0.0 {
+            let levels = other.levels.iter().map(|level| level.length);
+            if other.balance == Balance::Held && first_difference(levels, &errors) < 0.0 {
                 solved = other;
             }
         }

@@ -55,6 +55,7 @@ impl Simulation<'_> {
         }
         self.state.reliefs_move = moves;
         self.state.searched_here &= !moves;
+        self.look_for_reach()?;
         self.look_for_ease()?;
         let still = self.state.path.is_none() && self.motion.is_at_rest();
         self.record.settled = decided && !moves && still;

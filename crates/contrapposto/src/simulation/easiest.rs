@@ -9,7 +9,7 @@ use crate::contact::{Support, rates_that_move};
 use crate::equilibria::{Aim, RelaxedPosture, Search, SearchError, equilibria};
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::posture_solver::{LevelError, Options, SolvedPosture};
+use crate::posture_solver::{Options, SolvedPosture};
 use crate::statics::Load;
 use crate::tasks::{PriorityLevel, Task};
 
@@ -113,14 +113,14 @@ pub(super) fn easiest(
 
 /// Whether a posture is worth a motion from one with that effort and those errors of the tasks above effort.
 pub(super) fn is_better(solved: &SolvedPosture, effort: f64, errors: &[f64]) -> bool {
-    let farther = first_difference(&solved.levels, errors);
+    let farther = first_difference(solved.levels.iter().map(|level| level.length), errors);
     let easier = solved.effort < WORTH_A_MOTION * effort;
     solved.slip.length() <= MOST_SLIP && (farther < -WORTH_NEARING || easier && farther <= 0.0)
 }
 
 /// Difference of the errors of the first task that differ by more than [`UNREACHED`], greater than 0 where it is farther; 0 where none does.
-pub(super) fn first_difference(levels: &[LevelError], errors: &[f64]) -> f64 {
-    let mut differences = levels.iter().zip(errors).map(|(level, error)| level.length - error);
+pub(super) fn first_difference(levels: impl Iterator<Item = f64>, errors: &[f64]) -> f64 {
+    let mut differences = levels.zip(errors).map(|(level, error)| level - error);
     differences.find(|difference| difference.abs() > UNREACHED).unwrap_or(0.0)
 }
 

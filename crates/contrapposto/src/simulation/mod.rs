@@ -4,6 +4,7 @@
 //! of a step is the one that the constraints of the step before request. [`Simulation::step`] is that loop, once; [`run`] repeats it,
 //! and a [`Run`] can be interrupted and resumed. The same scenario and the same build give the same bits.
 
+mod approach;
 mod body_motion;
 mod body_ways;
 mod decide;

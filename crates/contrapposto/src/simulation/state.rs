@@ -6,6 +6,7 @@ use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
 use super::Event;
+use super::approach::Approach;
 use super::easiest::Eased;
 use super::goal::Goal;
 use super::group_state::GroupState;
@@ -61,6 +62,8 @@ pub(super) struct State {
     pub(super) eased: Option<Eased>,
     /// Local minima that an earlier search passed, since loads, tasks and supports are as they are.
     pub(super) minima: Vec<Posture>,
+    /// How near the body has come to its tasks while a hand rests.
+    pub(super) approach: Approach,
     /// State of the muscles of a run in which they tire one by one.
     pub(super) muscles: Option<MuscleState>,
 }
@@ -170,6 +173,7 @@ impl State {
             searched_here: true,
             eased: None,
             minima: vec![],
+            approach: Approach::default(),
             muscles: None,
         }
     }
@@ -194,6 +198,7 @@ impl State {
             && self.effort_at_start.is_none_or(f64::is_finite)
             && self.active.iter().chain(self.fatigue.iter().flatten()).all(|v| v.is_finite())
             && self.requests.iter().all(Request::is_finite)
+            && self.approach.is_finite()
             && self.path.as_ref().is_none_or(|path| path.fits(n, supports))
             && self.eased.as_ref().is_none_or(|eased| eased.asked.len() == n)
     }
@@ -398,7 +403,7 @@ mod tests {
         assert!(fresh().fits(1, 2, 1));
         assert!(State { effort: None, effort_at_start: None, next_event: 1, ..fresh() }.fits(1, 2, 1));
         type Spoil = (&'static str, fn(&mut State));
-        let spoils: [Spoil; 18] = [
+        let spoils: [Spoil; 19] = [
             ("groups", |state| state.groups.clear()),
             ("strategies", |state| state.strategies.push(Strategy::Active)),
             ("active torques", |state| state.active.clear()),
@@ -417,6 +422,7 @@ mod tests {
             ("a fatigue", |state| state.fatigue[0][1] = f64::NAN),
             ("a prediction", |state| state.requests[0].predicted_peak = f64::NAN),
             ("a step", |state| state.requests[0].step = Some(f64::NAN)),
+            ("an error", |state| _ = state.approach.stalls(&[f64::NAN], 0, 1.0)),
         ];
         for (what, spoil) in spoils {
             let mut state = fresh();

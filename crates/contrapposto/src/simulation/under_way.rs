@@ -1,6 +1,7 @@
 //! Follows a planned way sample by sample, and looks for one: a step that relieves a tired group, a hand taken up that keeps the body from a task,
 //! or an easier posture at rest.
 
+use super::approach::Approach;
 use super::body_motion::BodyMotion;
 use super::easiest::{Budget, Eased, SEARCH_BUDGET, SEARCH_BUDGET_OF_STEP, Searched};
 use super::foot_step::{PlannedStep, Purpose, Tired, plan_step};
@@ -63,6 +64,7 @@ impl Simulation<'_> {
         self.state.eased = None;
         self.state.minima.clear();
         self.state.step_tried.fill(false);
+        self.state.approach = Approach::default();
         let Some(path) = &mut self.state.path else { return Ok(()) };
         if path.has_step() {
             path.skip_to_end();
@@ -96,23 +98,28 @@ impl Simulation<'_> {
         self.state.step_tried[i] = true;
         let tired = Tired { coordinate: i, side, load: self.record.load[i], toward };
         let planned = plan_step(body, &self.state.posture, Purpose::Relief(tired), budget)?;
+        self.state.approach.is_over |= planned.found.is_some();
         self.begin(planned);
         Ok(())
     }
 
-    /// Looks for a hand at rest that keeps the body from a task which it could come nearer to with the hand taken up. A hand that a relief has put
-    /// down since the last event stays.
-    fn look_for_reach(&mut self) -> Result<(), ScenarioError> {
-        let Some(event) = self.scenario.events[..self.state.next_event].last() else { return Ok(()) };
-        let mut since = self.state.foot_steps.iter().rev().take_while(|step| step.time.0 >= event.time);
+    /// Looks for a hand at rest to take up, once in an event: where the body is as near to its tasks as it comes with the hand there and one of
+    /// them is missed. A hand that a relief has put down since the event stays.
+    pub(super) fn look_for_reach(&mut self) -> Result<(), ScenarioError> {
         let rests = |number: &usize| self.scenario.rests.iter().any(|rest| rest.support == *number);
-        if since.any(|step| step.relieves.is_some()) || !self.state.in_use.iter().any(rests) {
+        if self.state.approach.is_over || self.state.path.is_some() || !self.state.in_use.iter().any(rests) {
             return Ok(());
         }
         let Some(errors) = self.motion.body().and_then(BodyMotion::missed) else { return Ok(()) };
+        let stalls = self.state.approach.stalls(&errors, self.state.steps, self.scenario.run.step);
+        if !stalls && !self.motion.is_at_rest() {
+            return Ok(());
+        }
         let Some(budget) = self.search_budget() else { return Ok(()) };
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         let planned = plan_step(body, &self.state.posture, Purpose::Reach(&errors), budget)?;
+        self.state.approach = Approach::default();
+        self.state.approach.is_over = planned.found.is_none();
         self.begin(planned);
         Ok(())
     }
@@ -129,7 +136,7 @@ impl Simulation<'_> {
 
     /// Looks for an easier posture once the body has come to rest.
     pub(super) fn look_for_ease(&mut self) -> Result<(), ScenarioError> {
-        if !self.motion.is_at_rest() {
+        if self.state.path.is_some() || !self.motion.is_at_rest() {
             return Ok(());
         }
         if self.state.searched_here || self.motion.body_mut().is_none() {
@@ -141,16 +148,9 @@ impl Simulation<'_> {
             self.state.searched_here = true;
             return Ok(());
         }
-        if self.search_budget().is_none() {
-            return Ok(());
-        }
-        self.state.searched_here = true;
-        self.look_for_reach()?;
-        if self.state.path.is_some() {
-            return Ok(());
-        }
         let Some(mut budget) = self.search_budget() else { return Ok(()) };
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
+        self.state.searched_here = true;
         let budget_of_search = Budget { scattered: 0, work: budget, carriers_stay: true };
         let Searched { found, minima, work, cut } =
             body.easiest(&self.state.posture, &self.state.minima, budget_of_search)?;
