@@ -207,7 +207,12 @@ fn a_hand_that_rests_is_taken_up_when_the_work_moves_away() {
     assert!(step.time.0 >= 230.0, "{step:?}");
     assert!(deepest < 1e-3 && share == 0.0, "{deepest} m deep, {share} of the weight");
     let at = |time: f64| missing.iter().rfind(|(t, _)| *t <= time).unwrap().1;
-    println!("{} m off before the hand is taken up, {} m at the end", at(step.time.0), at(245.0));
+    let (before, after) = (at(step.time.0), at(245.0));
+    println!("{before} m off before the hand is taken up, {after} m at the end");
+    assert!(
+        step.relieves.is_none() && before > 0.02 && after < 1e-3,
+        "{before} m off before, {after} m after: {step:?}"
+    );
     assert_eq!(summary.in_use, [0, 1]);
 }
 

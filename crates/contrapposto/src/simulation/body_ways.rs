@@ -9,7 +9,7 @@ use super::easiest::{
     is_better, search,
 };
 use super::offer::Offer;
-use super::path::{Path, Planner};
+use super::path::{Path, Planner, greatest_load};
 use super::sample::StepKind;
 use crate::contact::{Balance, Place, Support};
 use crate::equilibria::{Aim, SCATTERED_STARTS};
@@ -167,7 +167,9 @@ impl BodyMotion<'_> {
         // On its way to a rest, and back, a limb does not hang.
         let levels = if change.is_some() { self.levels_with(&numbers) } else { self.levels().cloned().collect() };
         // A step may leave what reliefs ask for at the old place.
-        let keeps = |level: &PriorityLevel| change.is_none() || level.half_spaces.is_empty();
+        let for_a_task = change.is_some_and(|offer| offer.for_a_task);
+        let keeps = |level: &PriorityLevel| change.is_none() || !for_a_task && level.half_spaces.is_empty();
+        let load_now = greatest_load(&self.model, self.torques());
         let levels: Vec<PriorityLevel> =
             levels.into_iter().take_while(|level| !is_effort(level)).filter(keeps).collect();
         let planner = Planner {
@@ -178,6 +180,7 @@ impl BodyMotion<'_> {
             limits: &self.scenario.limits_with(&numbers),
             levels: &levels,
             loads: self.engine.loads(),
+            most_load: if for_a_task { load_now.max(1.0) } else { 1.0 },
             left: Cell::new(*budget),
         };
         let planned = match change {
@@ -191,7 +194,7 @@ impl BodyMotion<'_> {
     /// Numbers and supports in use, and the one that is put down.
     pub(super) fn with_change(&self, change: Option<Offer>) -> (Vec<usize>, Vec<Support>) {
         let (mut numbers, mut supports) = (self.in_use.clone(), self.supports.clone());
-        if let Some(Offer { number, kind: StepKind::PutDown }) = change {
+        if let Some(Offer { number, kind: StepKind::PutDown, .. }) = change {
             let place = numbers.partition_point(|known| *known < number);
             numbers.insert(place, number);
             let support = Support { place: Place::Fixed, ..self.scenario.supports[number].clone() };

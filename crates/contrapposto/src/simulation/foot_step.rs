@@ -130,10 +130,12 @@ impl Purpose<'_> {
 /// nearer, rests may be taken off.
 fn offers(body: &BodyMotion<'_>, purpose: Purpose<'_>) -> Vec<Offer> {
     if let Purpose::Reach(_) = purpose {
-        return body.offers_of_rests().filter(|offer| offer.kind == StepKind::TakenOff).collect();
+        let taken_off = body.offers_of_rests().filter(|offer| offer.kind == StepKind::TakenOff);
+        return taken_off.map(|offer| Offer { for_a_task: true, ..offer }).collect();
     }
     let free = |number: &&usize| body.scenario().supports[**number].place != Place::Fixed;
-    let elsewhere = body.in_use.iter().filter(free).map(|&number| Offer { number, kind: StepKind::Elsewhere });
+    let elsewhere =
+        body.in_use.iter().filter(free).map(|&number| Offer { number, kind: StepKind::Elsewhere, for_a_task: false });
     elsewhere.chain(body.offers_of_rests()).collect()
 }
 
@@ -211,14 +213,15 @@ impl BodyMotion<'_> {
     pub(super) fn offers_of_rests(&self) -> impl Iterator<Item = Offer> {
         self.scenario.rests.iter().map(|rest| {
             let kind = if self.in_use.contains(&rest.support) { StepKind::TakenOff } else { StepKind::PutDown };
-            Offer { number: rest.support, kind }
+            Offer { number: rest.support, kind, for_a_task: false }
         })
     }
 
     /// The posture nearest to `posture` in which the patch of a rest lies in its region, the supports in use stay where they are and tasks are
     /// done as far as that allows; `None` where there is none. `left` of a budget of work becomes less.
     pub(super) fn laid(&self, posture: &Posture, rest: &Rest, left: &mut usize) -> Option<Posture> {
-        let (numbers, _) = self.with_change(Some(Offer { number: rest.support, kind: StepKind::PutDown }));
+        let (numbers, _) =
+            self.with_change(Some(Offer { number: rest.support, kind: StepKind::PutDown, for_a_task: false }));
         let above = self.levels_with(&numbers).into_iter().take_while(|level| !is_effort(level));
         let levels: Vec<PriorityLevel> = above.filter(|level| level.half_spaces.is_empty()).collect();
         let planner = Planner {
@@ -229,6 +232,7 @@ impl BodyMotion<'_> {
             limits: &self.scenario.limits_with(&numbers),
             levels: &levels,
             loads: self.engine.loads(),
+            most_load: 1.0,
             left: Cell::new(*left),
         };
         let laid = planner.nearest(posture, rest.lies(&self.scenario.supports[rest.support]));

@@ -3,7 +3,8 @@
 //! The body moves by priorities: supports, the tasks above effort, then the coordinates toward the posture. A step has three parts:
 //! the body brings its centre of mass over the other supports until they hold it without the lifted one, the lifted one follows an arc
 //! to its new place, and the body takes the posture. The whole way is planned before the first sample is shown. A way on which any sample would be off
-//! balance, or in which a muscle group would need more than its strength, is no way.
+//! balance, or in which a muscle group would need more than its strength, is no way. Where a hand is taken off for a task, the tasks are left on the
+//! way, and a body in which a group needs more than its strength already may begin it.
 
 use std::cell::Cell;
 
@@ -11,7 +12,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Balance, Support};
-use crate::joint_torques::relative_load;
+use crate::joint_torques::{JointTorques, relative_load};
 use crate::kinematics::Kinematics;
 use crate::model::{Coordinate, Model, Placement};
 use crate::posture::Posture;
@@ -101,6 +102,8 @@ pub(super) struct Planner<'a> {
     /// The levels above effort.
     pub(super) levels: &'a [PriorityLevel],
     pub(super) loads: &'a [Load],
+    /// Greatest share of its strength that a muscle group may need on the way.
+    pub(super) most_load: f64,
     /// Work that is left of the budget; a way that needs more is none.
     pub(super) left: Cell<usize>,
 }
@@ -124,7 +127,8 @@ impl Planner<'_> {
         };
         let mut begin = from.clone();
         if offer.kind != StepKind::PutDown {
-            let Some(unloaded) = self.unloaded(from, (lifted, offer.kind))? else { return Ok(None) };
+            let toward = if offer.for_a_task { to } else { from };
+            let Some(unloaded) = self.unloaded((from, toward), (lifted, offer.kind))? else { return Ok(None) };
             let over = off_the_edge(from)?;
             let Some(reached) = self.shift((from, &unloaded), (self.supports, over), &mut path)? else {
                 return Ok(None);
@@ -198,11 +202,15 @@ impl Planner<'_> {
         Task::Placement(tasks::Placement { segment, point: Vector3::zeros(), target })
     }
 
-    /// The posture nearest to `from` in which the other supports hold the body while the lifted one touches its place.
-    fn unloaded(&self, from: &Posture, (lifted, kind): (usize, StepKind)) -> Result<Option<Posture>, EngineError> {
+    /// The posture nearest to `toward` that a body at `from` comes to in which the other supports hold it while the lifted one touches its place.
+    fn unloaded(
+        &self,
+        (from, toward): (&Posture, &Posture),
+        (lifted, kind): (usize, StepKind),
+    ) -> Result<Option<Posture>, EngineError> {
         let stays = self.held_at(self.placement(from, lifted)?, lifted);
         let Some(over_the_others) = self.over_the_others(from, (lifted, kind))? else { return Ok(None) };
-        let mut engine = self.engine(from, &self.without(lifted), vec![stays, over_the_others], from)?;
+        let mut engine = self.engine(from, &self.without(lifted), vec![stays, over_the_others], toward)?;
         let mut posture = from.clone();
         for _ in 0..UNLOADING_STEPS {
             let Some(largest) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
@@ -269,15 +277,10 @@ impl Planner<'_> {
         Ok(met.then_some(posture))
     }
 
-    /// Whether the supports hold the body in a posture, and no group needs more than its strength.
+    /// Whether the supports hold the body in a posture, and no group needs more than the way allows.
     pub(super) fn is_held(&self, engine: &mut Engine<'_>, posture: &Posture) -> Result<bool, EngineError> {
         engine.evaluate(posture)?;
-        let torques = engine.torques();
-        let load = |(i, coordinate): (usize, &Coordinate)| {
-            let active = coordinate.rate.map_or(0.0, |rate| torques.active_torque()[rate]);
-            relative_load(coordinate, torques.angles()[i], active)
-        };
-        let strong = self.model.coordinates().iter().enumerate().map(load).all(|load| load <= 1.0);
+        let strong = greatest_load(self.model, engine.torques()) <= self.most_load;
         Ok(strong && engine.contact().balance() == Balance::Held)
     }
 
@@ -311,4 +314,13 @@ impl Planner<'_> {
             }
         }
     }
+}
+
+/// The greatest relative load of all muscle groups of coordinates.
+pub(super) fn greatest_load(model: &Model, torques: &JointTorques) -> f64 {
+    let load = |(i, coordinate): (usize, &Coordinate)| {
+        let active = coordinate.rate.map_or(0.0, |rate| torques.active_torque()[rate]);
+        relative_load(coordinate, torques.angles()[i], active)
+    };
+    model.coordinates().iter().enumerate().map(load).fold(0.0, f64::max)
 }
