@@ -264,50 +264,9 @@ pub fn snapshot(bytes: &[u8]) {
     }
 }
 
-/// The scenario whose snapshots are attacked.
-pub const ONE_JOINT: &str = r#"
-format = 1
-[model]
-adult = { sex = "male", stature_m = 1.741, mass_kg = 73, part = "right_arm" }
-[posture]
-arm_flex_r_deg = 90
-elbow_flex_r_deg = 20
-[coordinates]
-free = ["elbow_flex_r"]
-[strategy]
-kind = "active"
-[run]
-duration_s = 100
-step_s = 0.1
-"#;
+/// The scenario whose snapshots and parts of sweeps are attacked.
+pub const ONE_JOINT: &str = include_str!("../one-joint.toml");
 
 fn finite(name: &str, values: &[f64]) {
     assert!(values.iter().all(|value| value.is_finite()), "{name} is not finite: {values:?}");
-}
-
-/// A snapshot of that scenario as JSON: `corpus/snapshot/start.json`.
-pub fn seed_of_snapshot() -> String {
-    let scenario = read_scenario("scenario.toml", ONE_JOINT.as_bytes(), None).expect("it is in order");
-    let run = Run::new(&scenario).expect("it runs");
-    serde_json::to_string(run.snapshot()).expect("a snapshot is JSON")
-}
-
-/// The part of a sweep: `corpus/part/lists.parquet`.
-pub fn seed_of_part() -> Vec<u8> {
-    let plan = read_plan("lists.toml", include_bytes!("../corpus/plan/lists.toml")).expect("it is in order");
-    let study = Study::new("scenario.toml", ONE_JOINT.as_bytes(), &plan).expect("it is in order");
-    study.part(0, || true, || ()).expect("nothing stops it")
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_seed_of_parts_is_that_of_today() {
-        assert_eq!(super::seed_of_part(), include_bytes!("../corpus/part/lists.parquet"));
-    }
-
-    #[test]
-    fn the_seed_of_snapshots_is_that_of_today() {
-        assert_eq!(super::seed_of_snapshot(), include_str!("../corpus/snapshot/start.json").trim());
-    }
 }
