@@ -43,7 +43,7 @@ pub(super) struct Tired {
     pub(super) toward: f64,
 }
 
-/// What a step is for.
+/// Purpose of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Purpose<'a> {
     /// A tired muscle group works less.

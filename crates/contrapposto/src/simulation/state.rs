@@ -62,7 +62,7 @@ pub(super) struct State {
     pub(super) eased: Option<Eased>,
     /// Local minima that an earlier search passed, since loads, tasks and supports are as they are.
     pub(super) minima: Vec<Posture>,
-    /// How near the body has come to its tasks while a hand rests.
+    /// Progress of the body toward its tasks while a hand rests.
     pub(super) approach: Approach,
     /// State of the muscles of a run in which they tire one by one.
     pub(super) muscles: Option<MuscleState>,
