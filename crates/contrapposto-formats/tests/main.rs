@@ -24,6 +24,7 @@ mod events;
 mod expression;
 mod fatigue;
 mod force_plates;
+mod fuzz_seeds;
 mod gltf;
 mod hanging_arms;
 mod heel;
