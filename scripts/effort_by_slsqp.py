@@ -351,9 +351,7 @@ def relaxed(program, scenario):
 
 
 def compare(scenario, arguments):
-    # A scenario that has changed since stays as SLSQP had it.
-    before = OUT.with_suffix("") / f"{scenario}.toml"
-    path = before if before.exists() else HERE / f"scenarios/{scenario}.toml"
+    path = HERE / f"scenarios/{scenario}.toml"
     problem = Problem(Rows(arguments.rows, path))
     names = problem.rows.about["coordinates"]
     coordinates, efforts = relaxed(arguments.program, path)

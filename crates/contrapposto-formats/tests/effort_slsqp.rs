@@ -1,10 +1,10 @@
 //! Compares `relax` with SLSQP of scipy from 50 random starts on the same problems of least effort, and checks what was kept of SLSQP.
 //!
 //! `data/effort_slsqp.json` is written by `scripts/effort_by_slsqp.py`: of every scenario all runs, and the best posture. Effort, balance,
-//! supports and tasks of that posture are computed anew here, so that nothing rests on SLSQP's word. A scenario that has changed since is in
-//! `data/effort_slsqp/` as SLSQP had it.
+//! supports and tasks of that posture are computed anew here, so that nothing rests on SLSQP's word. A scenario that changes is to be
+//! given to SLSQP again.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use contrapposto::contact::{Balance, ContactForces};
 use contrapposto::equilibria::equilibria;
@@ -40,19 +40,10 @@ fn kept() -> Vec<Kept> {
     let data: Value = serde_json::from_str(&data).unwrap();
     let scenarios = data["scenarios"].as_object().unwrap().iter();
     let read = scenarios.map(|(name, found)| {
-        let before: PathBuf = here.join(format!("tests/data/effort_slsqp/{name}.toml"));
-        let file = if before.exists() { before } else { here.join(format!("../../scenarios/{name}.toml")) };
-        // SLSQP knew no task of idle arms, and a girdle that does not move.
-        let text = format!("arms_hang = false\nshoulder_rhythm = false\n{}", std::fs::read_to_string(file).unwrap());
-        let mut scenario = read_relax(name, text.as_bytes(), None).unwrap();
-        let girdle = ["shoulder_rise_r", "shoulder_rise_l"].map(|name| scenario.model.coordinate(name).unwrap());
-        scenario.locked.extend(girdle.into_iter().filter_map(|c| scenario.model.coordinates()[c].rate));
-        scenario.locked.sort_unstable();
-        let of_slsqp = |(i, c): (usize, &Coordinate)| {
-            let value = &found["best"]["coordinates"][&c.name];
-            if girdle.contains(&i) { 0.0 } else { value.as_f64().unwrap() }
-        };
-        let values = scenario.model.coordinates().iter().enumerate().map(of_slsqp).collect();
+        let file = here.join(format!("../../scenarios/{name}.toml"));
+        let scenario = read_relax(name, &std::fs::read(file).unwrap(), None).unwrap();
+        let of_slsqp = |c: &Coordinate| found["best"]["coordinates"][&c.name].as_f64().unwrap();
+        let values = scenario.model.coordinates().iter().map(of_slsqp).collect();
         Kept {
             name: name.clone(),
             effort: found["best"]["effort"].as_f64().unwrap(),

@@ -1,7 +1,7 @@
 //! Decides which postures are different ways to stand.
 //!
-//! Two postures are one way to stand if no joint of the body is farther away in one than in the other by more than 5 cm,
-//! and no support carries more of the weight in one than in the other by more than a tenth. Both limits are assumed. Limbs that carry
+//! Two postures are one way to stand if no joint of the body is farther away in one than in the other by more than 5 cm, wherever on the floor the
+//! whole body stands, and no support carries more of the weight in one than in the other by more than a tenth. Both limits are assumed. Limbs that carry
 //! nothing and have no task do not count: an arm to the front and an arm at the side are one way to stand, and the first of them is the answer. A posture in
 //! which a group would need more than its strength is no way to stand where another posture needs less.
 //!
@@ -77,6 +77,14 @@ impl DifferentWays {
 struct WayToStand {
     joints: Vec<Vector3<f64>>,
     shares: Vec<f64>,
+    /// Against gravity; zero without gravity.
+    up: Vector3<f64>,
+}
+
+/// The shift along the floor from the places `from` to the places `to` of the same points, on average, m: a body that stands elsewhere in the same posture.
+pub(super) fn shift_on_the_floor(to: &[Vector3<f64>], from: &[Vector3<f64>], up: Vector3<f64>) -> Vector3<f64> {
+    let mean = to.iter().zip(from).map(|(to, from)| to - from).sum::<Vector3<f64>>() / to.len().max(1) as f64;
+    mean - up * up.dot(&mean)
 }
 
 impl WayToStand {
@@ -85,6 +93,7 @@ impl WayToStand {
         Self {
             joints: segments.map(|segment| kinematics.placement(model, segment).translation.vector).collect(),
             shares: supports.iter().map(|support| support.share).collect(),
+            up: (-model.gravity()).try_normalize(0.0).unwrap_or_default(),
         }
     }
 
@@ -103,7 +112,8 @@ impl WayToStand {
 
     /// `idle`: by segment, whether its joint does not count.
     fn is_like(&self, other: &Self, idle: &[bool]) -> bool {
-        let far = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (a - b).norm() > SAME_JOINT;
+        let shift = shift_on_the_floor(&self.joints, &other.joints, self.up);
+        let far = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (a - b - shift).norm() > SAME_JOINT;
         let shifted = |(a, b): (&f64, &f64)| (a - b).abs() > SAME_SHARE;
         let mut joints = self.joints.iter().zip(&other.joints).zip(idle);
         !joints.any(|(pair, idle)| !idle && far(pair)) && !self.shares.iter().zip(&other.shares).any(shifted)

@@ -244,6 +244,11 @@ impl<'a> Engine<'a> {
         Ok(())
     }
 
+    /// Replaces [`Options::max_step`], rad or m.
+    pub(crate) fn set_max_step(&mut self, max_step: f64) {
+        self.settings.options.max_step = max_step;
+    }
+
     /// Lets the next step be as long as the first one: for new targets.
     pub fn widen_trust_region(&mut self) {
         self.rule.widen_trust_region(&self.settings.options);

@@ -158,7 +158,7 @@ impl MeritRule {
         linearisation: &mut Linearisation,
         solver: &Solver,
     ) {
-        linearisation.bound(settings, iterate, self.trust_radius);
+        linearisation.bound(settings, iterate, self.trust_radius.min(settings.options.max_step));
         let first = settings.first_level();
         let end = first + settings.effort_level.unwrap_or(settings.levels.len());
         self.damp(first, &mut linearisation.problem.levels[..end]);

@@ -14,6 +14,7 @@ use crate::posture_solver::{Engine, Options};
 use crate::statics::{Load, LoadKind};
 use crate::tasks::{PriorityLevel, Task};
 
+use super::relief_step::{ReliefStep, leads_farther};
 use super::sample::{Contact, Standing};
 use super::state::Request;
 use super::{Scenario, ScenarioError};
@@ -66,6 +67,8 @@ pub(super) struct BodyMotion<'a> {
     pub(super) before: Posture,
     /// Slow steps in a row, [`RESTING`] at rest.
     convergence_count: u32,
+    /// Of the next step while reliefs move.
+    relief_step: ReliefStep,
     /// Coordinates whose half-spaces the last step was to keep, and those of them that it did not keep.
     pub(super) requested: Vec<usize>,
     deferred: Vec<usize>,
@@ -114,6 +117,7 @@ impl<'a> BodyMotion<'a> {
             placed_at: placed_at.clone(),
             before: placed_at.clone(),
             convergence_count: 0,
+            relief_step: ReliefStep::new(max_step),
             requested: vec![],
             deferred: vec![],
         })
@@ -153,10 +157,9 @@ impl<'a> BodyMotion<'a> {
         level.map_or(0.0, |level| self.engine.error(level).powi(2))
     }
 
-    /// Moves by one step toward the half-spaces of the `requested` coordinates, the most fatigued first, and the tasks.
-    /// `reliefs_move`: some relief asks for motion, not only to be kept. A body at rest stays while the same coordinates request relief.
-    /// Afterwards `deferred` holds the requested coordinates whose half-spaces the posture violates, and those past the first
-    /// [`MOST_RELIEFS`].
+    /// Moves by one step toward the half-spaces of the `requested` coordinates, the most fatigued first, and the tasks. `reliefs_move`: some
+    /// relief asks for motion, not only to be kept. A body at rest stays while the same coordinates request relief. Afterwards `deferred` holds
+    /// the requested coordinates whose half-spaces the posture violates, and those past the first [`MOST_RELIEFS`].
     pub(super) fn step(
         &mut self,
         posture: &mut Posture,
@@ -171,16 +174,29 @@ impl<'a> BodyMotion<'a> {
         self.requested.clear();
         self.requested.extend_from_slice(requested);
         self.write_relief_levels(requests);
+        self.engine.evaluate(posture)?;
+        self.relief_step.observe(errors_of(&self.engine, self.above));
+        self.engine.set_max_step(self.relief_step.next(reliefs_move));
         if reliefs_move {
             self.engine.widen_trust_region();
         }
         let largest = self.engine.step(posture)?.largest;
+        let farther = reliefs_move && {
+            self.engine.evaluate(posture)?;
+            leads_farther(errors_of(&self.engine, self.above), &self.engine.errors()[..self.above])
+        };
+        if farther {
+            self.take_back(posture);
+        }
         self.count_convergence(posture, largest, reliefs_move)?;
         let kept = |slot: usize, i: usize| {
             slot < MOST_RELIEFS && requests[i].half_space.violation(posture.values()) <= HALF_SPACE_TOLERANCE
         };
         self.deferred.clear();
         self.deferred.extend(requested.iter().enumerate().filter(|(slot, i)| !kept(*slot, **i)).map(|(_, i)| *i));
+        if reliefs_move {
+            self.relief_step.adapt(farther, largest);
+        }
         Ok(())
     }
 
@@ -276,6 +292,8 @@ impl<'a> BodyMotion<'a> {
 
     /// Forgets all that earlier steps have shown.
     pub(super) fn forget(&mut self) {
+        self.relief_step.forget();
+        self.engine.set_max_step(self.relief_step.greatest());
         self.engine.restart();
         self.convergence_count = 0;
         self.slopes.fill(None);
@@ -283,6 +301,8 @@ impl<'a> BodyMotion<'a> {
 
     /// Begins to count slow steps anew: loads, tasks or the posture have changed.
     pub(super) fn restart_convergence(&mut self) {
+        self.relief_step.restart();
+        self.engine.set_max_step(self.relief_step.greatest());
         self.engine.widen_trust_region();
         self.convergence_count = 0;
         self.slopes.fill(None);
@@ -355,6 +375,11 @@ impl<'a> BodyMotion<'a> {
 /// Whether effort is asked for.
 pub(super) fn is_effort(level: &PriorityLevel) -> bool {
     level.tasks.iter().any(|task| matches!(task, Task::Effort(_)))
+}
+
+/// Errors of the first levels of an engine in the posture that it evaluated last.
+fn errors_of(engine: &Engine<'_>, levels: usize) -> impl Iterator<Item = f64> {
+    (0..levels).map(|level| engine.error(level))
 }
 
 /// An engine for a scenario's body, which has the strength of `model`, that moves its free coordinates.

@@ -21,6 +21,7 @@ mod offer;
 mod path;
 mod prediction;
 mod relief_log;
+mod relief_step;
 mod rest;
 mod run;
 mod sample;
