@@ -227,8 +227,8 @@ fn after_a_passive_law_gives_no_number_posture_and_supports_stay() {
                 let farthest = sample.posture.iter().zip(&last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
                 assert!(farthest < 0.1, "{farthest} rad from the last sample");
             }
-            // As text: a torque that is no number is not equal to itself.
-            Err(again) => assert_eq!(again.to_string(), error.to_string()),
+            // At an angle as near or nearer: steps may be shorter after an error.
+            Err(again) => assert!(names_it(&again.to_string()), "{again}"),
         }
     }
 }

@@ -181,10 +181,10 @@ impl<'a> BodyMotion<'a> {
             self.engine.widen_trust_region();
         }
         let largest = self.engine.step(posture)?.largest;
-        let farther = reliefs_move && {
-            self.engine.evaluate(posture)?;
-            leads_farther(errors_of(&self.engine, self.above), &self.engine.errors()[..self.above])
-        };
+        // A posture in which a law gives no numbers is refused when its torques are computed.
+        let farther = reliefs_move
+            && self.engine.evaluate(posture).is_ok()
+            && leads_farther(errors_of(&self.engine, self.above), &self.engine.errors()[..self.above]);
         if farther {
             self.take_back(posture);
         }

@@ -18,7 +18,7 @@ const GROWTH: f64 = 1.2;
 /// A task is on its way where its error has fallen by more in a step, m or rad. Assumed: a tenth of a usual step of an arm.
 const ON_ITS_WAY: f64 = 1e-3;
 /// A task has come nearer where its error has fallen by more, m or rad: those below it may be farther then. Assumed.
-const NEARER: f64 = 1e-4;
+const COMES_NEARER: f64 = 1e-4;
 
 /// Greatest change of a rate in the next step, rad or m.
 #[derive(Clone, Debug)]
@@ -87,7 +87,7 @@ impl ReliefStep {
 /// Whether the first error that has changed noticeably, of levels from the most important one on, has grown.
 pub(super) fn leads_farther(now: impl Iterator<Item = f64>, before: &[f64]) -> bool {
     let mut changes = now.zip(before).map(|(now, before)| now - before);
-    changes.find(|change| *change < -NEARER || *change > UNREACHED).is_some_and(|change| change > 0.0)
+    changes.find(|change| *change < -COMES_NEARER || *change > UNREACHED).is_some_and(|change| change > 0.0)
 }
 
 #[cfg(test)]
@@ -99,8 +99,8 @@ mod tests {
         let farther = |now: [f64; 3]| leads_farther(now.into_iter(), &[0.1, 0.2, 0.3]);
         assert!(!farther([0.1, 0.2, 0.3]) && !farther([0.1, 0.2 + 0.9 * UNREACHED, 0.3]));
         assert!(farther([0.1, 0.2 + 1.1 * UNREACHED, 0.3]) && farther([0.1, 0.2 + 1.1 * UNREACHED, 0.1]));
-        assert!(!farther([0.1 - 1.1 * NEARER, 0.4, 0.3]), "a more important one is nearer");
-        assert!(farther([0.1 - 0.9 * NEARER, 0.4, 0.3]), "but not noticeably");
+        assert!(!farther([0.1 - 1.1 * COMES_NEARER, 0.4, 0.3]), "a more important one is nearer");
+        assert!(farther([0.1 - 0.9 * COMES_NEARER, 0.4, 0.3]), "but not noticeably");
     }
 
     #[test]
