@@ -183,4 +183,20 @@ mod tests {
         let seven: Vec<(f64, f64)> = (0..7).map(|k| (20.0 * f64::from(k), 0.5)).collect();
         assert_eq!(ways(&seven), (vec![0.0, 20.0, 40.0, 60.0, 80.0], 2));
     }
+
+    #[test]
+    fn a_body_that_stands_elsewhere_on_the_floor_in_the_same_posture_stands_in_the_same_way() {
+        let model = adult(&Adult::default()).unwrap();
+        let idle = vec![false; model.segments().len()];
+        let mut kinematics = Kinematics::new(&model);
+        let mut way = |coordinate: &str, by: f64| {
+            let mut posture = model.default_posture();
+            posture.values_mut()[model.coordinate(coordinate).unwrap()] += by;
+            kinematics.update(&model, &posture).unwrap();
+            WayToStand::of(&model, &kinematics, &[])
+        };
+        let start = way("pelvis_tx", 0.0);
+        assert!(start.is_like(&way("pelvis_tx", 0.5), &idle) && start.is_like(&way("pelvis_tz", -0.5), &idle));
+        assert!(!start.is_like(&way("pelvis_ty", 0.1), &idle) && !start.is_like(&way("pelvis_rotation", 0.5), &idle));
+    }
 }
