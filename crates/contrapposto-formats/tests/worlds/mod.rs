@@ -113,6 +113,17 @@ fn a_body_before_a_target_out_of_reach_does_not_quiver_while_a_relief_asks_for_m
     }
 }
 
+/// A world that misses a target after an event, and has a snapshot then.
+#[test]
+fn a_run_that_misses_a_target_after_an_event_is_the_same_from_its_snapshot() {
+    let seed = 260;
+    let world = World::random(&mut Random::seed_from_u64(seed));
+    let scenario = world.scenario().unwrap();
+    let (course, _) = course(&scenario).unwrap();
+    assert!(course.snapshot.samples > 0 && !scenario.events.is_empty());
+    repeats(&world.with_threads(&scenario), &course, seed);
+}
+
 impl Course {
     /// No goal is taken up again, and no step of a relief raises effort above its factor.
     fn keeps_what_relief_promises(&self, name: &str) {

@@ -91,6 +91,7 @@ impl<'a> Simulation<'a> {
         for event in &scenario.events[..events] {
             simulation.apply(event)?;
         }
+        simulation.motion.forget();
         simulation.state = state;
         match (&mut simulation.tiring, &simulation.state.muscles) {
             (Some(course), Some(muscles)) if muscles.fits(course) => course.resume(muscles),
