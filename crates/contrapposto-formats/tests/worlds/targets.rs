@@ -1,5 +1,6 @@
 //! Errors of the tasks that no relief may make worse.
 
+use contrapposto::contact::Slip;
 use contrapposto::simulation::{Sample, Scenario};
 
 /// Such an error may grow by so much while nothing changes, m or rad: what a step of the solver leaves beside its linear model.
@@ -21,7 +22,9 @@ pub(crate) struct Targets {
 impl Targets {
     pub(crate) fn take(&mut self, scenario: &Scenario, sample: &Sample) {
         let events = scenario.events.partition_point(|event| event.time <= sample.time + 1e-9);
-        if events > self.events || sample.stepping {
+        // Supports come first: while they slide, which the run says and from some millimetres on ends for, tasks may give.
+        let slides = sample.standing.unwrap().slip.exceeds(Slip::NOTICED);
+        if events > self.events || sample.stepping || slides {
             self.events = events;
             self.tasks.clear();
         }
