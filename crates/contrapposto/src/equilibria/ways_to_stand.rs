@@ -1,8 +1,8 @@
 //! Decides which postures are different ways to stand.
 //!
-//! Two postures are one way to stand if no joint of the body is farther away in one than in the other by more than 5 cm, wherever on the floor the
-//! whole body stands, and no support carries more of the weight in one than in the other by more than a tenth. Both limits are assumed. Limbs that carry
-//! nothing and have no task do not count: an arm to the front and an arm at the side are one way to stand, and the first of them is the answer. A posture in
+//! Two postures are one way to stand if no joint of the body is farther away in one than in the other by more than 5 cm, wherever on the
+//! floor the whole body stands, and no support carries more of the weight in one than in the other by more than a tenth. Both limits are
+//! assumed. Limbs that carry nothing and have no task do not count: an arm to the front and an arm at the side are one way to stand, and the first of them is the answer. A posture in
 //! which a group would need more than its strength is no way to stand where another posture needs less.
 //!
 //! The same with left and right exchanged, at the same effort, is one way to stand where that is asked for.
@@ -81,12 +81,6 @@ struct WayToStand {
     up: Vector3<f64>,
 }
 
-/// The shift along the floor from the places `from` to the places `to` of the same points, on average, m: a body that stands elsewhere in the same posture.
-pub(super) fn shift_on_the_floor(to: &[Vector3<f64>], from: &[Vector3<f64>], up: Vector3<f64>) -> Vector3<f64> {
-    let mean = to.iter().zip(from).map(|(to, from)| to - from).sum::<Vector3<f64>>() / to.len().max(1) as f64;
-    mean - up * up.dot(&mean)
-}
-
 impl WayToStand {
     fn of(model: &Model, kinematics: &Kinematics, supports: &[Carried]) -> Self {
         let segments = 0..model.segments().len();
@@ -112,11 +106,14 @@ impl WayToStand {
 
     /// `idle`: by segment, whether its joint does not count.
     fn is_like(&self, other: &Self, idle: &[bool]) -> bool {
-        let shift = shift_on_the_floor(&self.joints, &other.joints, self.up);
-        let far = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (a - b - shift).norm() > SAME_JOINT;
         let shifted = |(a, b): (&f64, &f64)| (a - b).abs() > SAME_SHARE;
-        let mut joints = self.joints.iter().zip(&other.joints).zip(idle);
-        !joints.any(|(pair, idle)| !idle && far(pair)) && !self.shares.iter().zip(&other.shares).any(shifted)
+        let pairs = self.joints.iter().zip(&other.joints).zip(idle);
+        let apart: Vec<Vector3<f64>> = pairs.filter(|(_, idle)| !**idle).map(|((a, b), _)| a - b).collect();
+        // Elsewhere on the floor in the same posture all joints are as far apart.
+        let mean = apart.iter().sum::<Vector3<f64>>() / apart.len().max(1) as f64;
+        let elsewhere = mean - self.up * self.up.dot(&mean);
+        let near = |shift: Vector3<f64>| apart.iter().all(|apart| (apart - shift).norm() <= SAME_JOINT);
+        (near(Vector3::zeros()) || near(elsewhere)) && !self.shares.iter().zip(&other.shares).any(shifted)
     }
 }
 
@@ -198,5 +195,9 @@ mod tests {
         let start = way("pelvis_tx", 0.0);
         assert!(start.is_like(&way("pelvis_tx", 0.5), &idle) && start.is_like(&way("pelvis_tz", -0.5), &idle));
         assert!(!start.is_like(&way("pelvis_ty", 0.1), &idle) && !start.is_like(&way("pelvis_rotation", 0.5), &idle));
+        // An arm that counts for nothing does not shift the others either.
+        let raised = way("arm_flex_r", 1.6);
+        let moved: Vec<bool> = raised.joints.iter().zip(&start.joints).map(|(a, b)| (a - b).norm() > 1e-9).collect();
+        assert!(!start.is_like(&raised, &idle) && start.is_like(&raised, &moved));
     }
 }

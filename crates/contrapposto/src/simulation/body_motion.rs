@@ -14,9 +14,9 @@ use crate::posture_solver::{Engine, Options};
 use crate::statics::{Load, LoadKind};
 use crate::tasks::{PriorityLevel, Task};
 
-use super::relief_step::{ReliefStep, leads_farther};
 use super::sample::{Contact, Standing};
 use super::state::Request;
+use super::step_length::{StepLength, leads_farther};
 use super::{Scenario, ScenarioError};
 
 /// Levels for reliefs; requests of less fatigued groups beyond them wait.
@@ -67,8 +67,8 @@ pub(super) struct BodyMotion<'a> {
     pub(super) before: Posture,
     /// Slow steps in a row, [`RESTING`] at rest.
     convergence_count: u32,
-    /// Of the next step while reliefs move.
-    relief_step: ReliefStep,
+    /// Of the next step.
+    step_length: StepLength,
     /// Coordinates whose half-spaces the last step was to keep, and those of them that it did not keep.
     pub(super) requested: Vec<usize>,
     deferred: Vec<usize>,
@@ -117,7 +117,7 @@ impl<'a> BodyMotion<'a> {
             placed_at: placed_at.clone(),
             before: placed_at.clone(),
             convergence_count: 0,
-            relief_step: ReliefStep::new(max_step),
+            step_length: StepLength::new(max_step),
             requested: vec![],
             deferred: vec![],
         })
@@ -175,8 +175,8 @@ impl<'a> BodyMotion<'a> {
         self.requested.extend_from_slice(requested);
         self.write_relief_levels(requests);
         self.engine.evaluate(posture)?;
-        self.relief_step.observe(errors_of(&self.engine, self.above));
-        self.engine.set_max_step(self.relief_step.next(reliefs_move));
+        self.step_length.observe(errors_of(&self.engine, self.above));
+        self.engine.set_max_step(self.step_length.next(reliefs_move));
         if reliefs_move {
             self.engine.widen_trust_region();
         }
@@ -195,7 +195,7 @@ impl<'a> BodyMotion<'a> {
         self.deferred.clear();
         self.deferred.extend(requested.iter().enumerate().filter(|(slot, i)| !kept(*slot, **i)).map(|(_, i)| *i));
         if reliefs_move {
-            self.relief_step.adapt(farther, largest);
+            self.step_length.adapt(farther, largest);
         }
         Ok(())
     }
@@ -292,8 +292,8 @@ impl<'a> BodyMotion<'a> {
 
     /// Forgets all that earlier steps have shown.
     pub(super) fn forget(&mut self) {
-        self.relief_step.forget();
-        self.engine.set_max_step(self.relief_step.greatest());
+        self.step_length.forget();
+        self.engine.set_max_step(self.step_length.greatest());
         self.engine.restart();
         self.convergence_count = 0;
         self.slopes.fill(None);
@@ -301,8 +301,8 @@ impl<'a> BodyMotion<'a> {
 
     /// Begins to count slow steps anew: loads, tasks or the posture have changed.
     pub(super) fn restart_convergence(&mut self) {
-        self.relief_step.restart();
-        self.engine.set_max_step(self.relief_step.greatest());
+        self.step_length.restart();
+        self.engine.set_max_step(self.step_length.greatest());
         self.engine.widen_trust_region();
         self.convergence_count = 0;
         self.slopes.fill(None);

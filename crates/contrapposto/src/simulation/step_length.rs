@@ -2,8 +2,8 @@
 //!
 //! A step keeps tasks to first order. Where a task is out of reach, or tasks and supports leave hardly any motion, what a step leaves of second
 //! order may be as large as what it gains, and the body would go back and forth by some millimetres. So steps are short once a task above
-//! relief has been missed for a while and comes no nearer. While reliefs move, a step that leads farther from such a task is taken back, and the next one is
-//! shorter.
+//! relief has been missed for a while and comes no nearer. While reliefs move, a step that leads farther from such a task is taken back, and
+//! the next one is shorter.
 
 use super::easiest::UNREACHED;
 
@@ -22,8 +22,9 @@ const COMES_NEARER: f64 = 1e-4;
 
 /// Greatest change of a rate in the next step, rad or m.
 #[derive(Clone, Debug)]
-pub(super) struct ReliefStep {
+pub(super) struct StepLength {
     greatest: f64,
+    /// While reliefs move and no task is missed.
     next: f64,
     /// The least error of each level above relief since a level above it was on its way.
     least: Vec<f64>,
@@ -31,7 +32,7 @@ pub(super) struct ReliefStep {
     missed: u32,
 }
 
-impl ReliefStep {
+impl StepLength {
     /// No step is greater than `greatest`, rad or m.
     pub(super) fn new(greatest: f64) -> Self {
         Self { greatest, next: greatest, least: vec![], missed: A_WHILE }
@@ -105,7 +106,7 @@ mod tests {
 
     #[test]
     fn steps_are_shorter_after_one_taken_back_and_grow_again_to_the_greatest() {
-        let mut step = ReliefStep::new(0.02);
+        let mut step = StepLength::new(0.02);
         step.restart();
         step.adapt(false, 0.02);
         assert_eq!(step.next(true), 0.02);
@@ -118,7 +119,7 @@ mod tests {
     }
 
     /// The greatest step after each of these errors, in hundredths.
-    fn steps(step: &mut ReliefStep, errors: &[[f64; 2]]) -> Vec<f64> {
+    fn steps(step: &mut StepLength, errors: &[[f64; 2]]) -> Vec<f64> {
         let mut after = |errors: &[f64; 2]| {
             step.observe(errors.iter().copied());
             100.0 * step.next(false)
@@ -129,7 +130,7 @@ mod tests {
     #[test]
     fn steps_are_short_once_a_task_has_been_missed_for_a_while_and_none_comes_nearer() {
         let (short, usual) = (0.25, 2.0);
-        let mut step = ReliefStep::new(0.02);
+        let mut step = StepLength::new(0.02);
         assert_eq!(steps(&mut step, &[[0.0, 0.1], [0.0, 0.1 - 2.0 * ON_ITS_WAY]]), [short, usual], "it comes nearer");
         step.forget();
         assert_eq!(steps(&mut step, &[[0.0, 0.1], [0.0, 0.2], [0.0, 0.1]]), [short; 3], "it was as near once");
