@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use nalgebra::Vector3;
 
 use super::mirror::Mirror;
+use super::way_to_stand::WayToStand;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture_solver::SolvedPosture;
@@ -40,6 +41,7 @@ pub(super) struct Candidate {
     pub(super) relative_torques: Vec<[f64; 2]>,
     /// Centre of mass of every segment, ground, m.
     pub(super) places: Vec<Vector3<f64>>,
+    pub(super) way: WayToStand,
     /// Starts that led here, in words.
     pub(super) starts: Vec<String>,
 }
@@ -51,6 +53,11 @@ impl Candidate {
         let pairs = self.relative_torques.iter().flatten().zip(other.relative_torques.iter().flatten());
         let far = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (a - b).norm() > SAME_PLACE;
         pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME_TORQUE) && !self.places.iter().zip(&other.places).any(far)
+    }
+
+    /// Whether no group needs more than its strength.
+    pub(super) fn is_held(&self) -> bool {
+        self.relative_torques.iter().all(|[external, passive]| (external + passive).abs() <= 1.0)
     }
 
     /// Orders postures: those with fewer limbs held up come first, of them the one of less effort.
@@ -97,4 +104,34 @@ pub(super) fn keep_worth(found: &[Candidate], selected: &mut Vec<usize>, worth: 
 pub(super) fn places(model: &Model, kinematics: &Kinematics) -> Vec<Vector3<f64>> {
     let segments = model.segments().iter().enumerate();
     segments.map(|(i, segment)| kinematics.station(model, i, segment.center_of_mass)).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+impl Candidate {
+    /// The adult with the right arm forward by so many degrees, at this effort; a group of the shoulder works at so much of its strength.
+    pub(super) fn with_arm(model: &Model, degrees: f64, (effort, load): (f64, f64)) -> Self {
+        let mut posture = model.default_posture();
+        posture.values_mut()[model.coordinate("arm_flex_r").unwrap()] = f64::to_radians(degrees);
+        let mut kinematics = Kinematics::new(model);
+        kinematics.update(model, &posture).unwrap();
+        let relaxed = SolvedPosture {
+            posture,
+            levels: vec![],
+            effort,
+            slip: crate::contact::Slip::default(),
+            balance: crate::contact::Balance::Held,
+            reason: crate::posture_solver::Reason::Converged,
+            steps: 0,
+        };
+        Self {
+            relaxed,
+            excess: 0.0,
+            raised_limbs: 0,
+            relative_torques: vec![[-1.5 * load, 0.5 * load]],
+            places: places(model, &kinematics),
+            way: WayToStand::of(model, &kinematics, vec![]),
+            starts: vec![],
+        }
+    }
 }

@@ -4,14 +4,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::candidate::{Candidate, Worth, keep_worth};
 use super::description::describe;
-use super::mirror::Mirror;
 use super::other_places::other_places;
-use super::outcome::{Equilibria, MOST_MINIMA};
+use super::outcome::{Equilibria, MOST_MINIMA, RelaxedPosture};
 use super::raised_limbs::LimbsWithoutTask;
 use super::scattered::scattered;
 use super::search::{Aim, Search, SearchError, Stage};
 use super::solvers::{Attempt, EVERYTHING, Outcome, Solvers, Start, Steps, Way};
-use super::ways_to_stand::DifferentWays;
 use crate::batch;
 use crate::contact::Missing;
 use crate::kinematics::Kinematics;
@@ -68,7 +66,11 @@ pub(super) struct Finder<'a> {
 }
 
 impl<'a> Finder<'a> {
-    fn new(search: &'a Search<'a>, options: Options, watch: &'a mut dyn FnMut(usize)) -> Result<Self, SearchError> {
+    pub(super) fn new(
+        search: &'a Search<'a>,
+        options: Options,
+        watch: &'a mut dyn FnMut(usize),
+    ) -> Result<Self, SearchError> {
         Ok(Self {
             search,
             solvers: Solvers::new(search, options)?,
@@ -144,10 +146,11 @@ impl<'a> Finder<'a> {
     }
 
     /// Descends from every different posture that was explored and is worth it, and from those that are known; seeks lower local minima from
-    /// the different ones of least effort, and settles in the others where all ways to stand are wanted.
+    /// the different ones of least effort, and settles in others where all ways to stand are wanted.
     fn converge(&mut self) {
         let starts = self.starts;
-        let mut explored = self.worth(Stage::Exploratory, Worth::START);
+        let mut explored: Vec<(Posture, Vec<String>)> =
+            self.worth(Stage::Exploratory, Worth::START).into_iter().map(posture_and_labels).collect();
         let known = self.search.aim.known().iter();
         explored.extend(known.map(|posture| (posture.clone(), vec!["an earlier posture".to_owned()])));
         let mut before = self.begin_stage();
@@ -160,9 +163,9 @@ impl<'a> Finder<'a> {
         let all_ways = matches!(self.search.aim, Aim::Ways | Aim::WaysOnEitherSide);
         let hopped = if all_ways { HOPPED_OF_ALL } else { HOPPED_TO_LEAST };
         let others = least.split_off(hopped.min(least.len()));
-        self.solve_straight(Stage::Converged, least);
+        self.solve_straight(Stage::Converged, least.into_iter().map(posture_and_labels).collect());
         if all_ways {
-            self.solve_straight(Stage::Settled, others);
+            self.settle(others);
         }
         self.hang(if all_ways { HUNG } else { 0 });
         if all_ways {
@@ -188,18 +191,17 @@ impl<'a> Finder<'a> {
     }
 
     /// Solves in a stage from postures as they are.
-    fn solve_straight(&mut self, stage: Stage, from: Vec<(Posture, Vec<String>)>) {
+    pub(super) fn solve_straight(&mut self, stage: Stage, from: Vec<(Posture, Vec<String>)>) {
         let start = |(from, labels)| Start { stage, from, way: Way::Nothing, labels, unless_found: None };
         self.solve_all(from.into_iter().map(start).collect());
     }
 
-    /// Postures and labels of a stage that are worth going on from, that of least effort first.
-    fn worth(&self, stage: Stage, worth: Worth) -> Vec<(Posture, Vec<String>)> {
+    /// The postures of a stage that are worth going on from, that of least effort first.
+    fn worth(&self, stage: Stage, worth: Worth) -> Vec<Candidate> {
         let mut candidates = self.selected(stage);
         candidates.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
         keep_worth(&self.found, &mut candidates, worth);
-        let found = candidates.into_iter().map(|i| &self.found[i]);
-        found.map(|found| (found.relaxed.posture.clone(), found.starts.clone())).collect()
+        candidates.into_iter().map(|i| self.found[i].clone()).collect()
     }
 
     /// Begins a stage with nothing found; returns what was found before.
@@ -337,30 +339,27 @@ impl<'a> Finder<'a> {
                 .or(refused)
                 .unwrap_or(SearchError::CannotStand(EVERYTHING)));
         }
-        let mut selected = self.selected(Stage::Converged);
-        if selected.is_empty() {
-            // All slip or have not converged: the one that slips least, whose figures say so.
-            let slip = |i: &usize| self.found[*i].relaxed.slip.length();
-            selected.extend((0..self.found.len()).min_by(|a, b| slip(a).total_cmp(&slip(b))));
-        }
-        selected.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
-        let yielded = self.found.len() - selected.len();
-        let (least, all) = (self.found[selected[0]].raised_limbs, selected.len());
-        selected.retain(|&i| self.found[i].raised_limbs == least);
-        keep_worth(&self.found, &mut selected, Worth::ANSWER);
-        let raised = all - selected.len();
+        // Of postures that yielded, slipped or have not converged one is shown where there is no other.
+        let yielded = self.found.len() - self.selected(Stage::Converged).len().max(1);
+        let worth = self.worth_an_answer();
+        let mut ways = self.different_ways();
+        let answers: Vec<usize> = worth.iter().copied().filter(|&i| ways.take(&self.found[i])).collect();
+        let raised = self.found.len() - yielded - worth.len();
         let engine = self.solvers.engine(Stage::Converged);
-        let mirror = matches!(self.search.aim, Aim::WaysOnEitherSide).then(|| Mirror::of(self.search.model)).flatten();
-        let mut answers = DifferentWays::new(self.search, mirror);
-        for i in selected {
+        let mut postures = vec![];
+        for (i, way) in answers.into_iter().zip(&ways.answers) {
             let Candidate { relaxed, starts, .. } = self.found[i].clone();
             let posture = describe(self.search, engine, relaxed, starts)?;
-            answers.take(self.search.model, engine.torques().kinematics(), posture);
+            postures.push(RelaxedPosture { mirrored: way.mirrored, ..posture });
         }
-        let DifferentWays { postures, alike, .. } = answers;
         let (starts, fell, steps, work, cut) =
             (self.starts, self.fell.len(), self.steps.steps, self.steps.work(), self.cut);
         let minima = self.minima;
-        Ok(Equilibria { postures, minima, starts, fell, yielded, alike: alike + raised, steps, work, cut })
+        Ok(Equilibria { postures, minima, starts, fell, yielded, alike: ways.alike + raised, steps, work, cut })
     }
+}
+
+/// Where a solve of the next stage starts, and the labels of its starts.
+pub(super) fn posture_and_labels(found: Candidate) -> (Posture, Vec<String>) {
+    (found.relaxed.posture, found.starts)
 }

@@ -22,17 +22,18 @@
 //! in for 3 to 5 and for single goals.
 //!
 //! From every different posture that does not need far more effort than the easiest one a descent leads near its local minimum; from those of
-//! least effort basin hopping seeks lower ones, and of the others, where all ways to stand are wanted, each is followed to its end, in descents
-//! that cost a third of a step of priorities each. Two postures count as one if at no joint the torque of loads or of
+//! least effort basin hopping seeks lower ones, and of the others, where all ways to stand are wanted, each is followed to its end, that of least
+//! effort first, until as many ways to stand as an answer has take no more effort than the next one. Two postures count as one if at no joint the torque of loads or of
 //! passive tissue differs by more than a twentieth of the strength there and no segment is elsewhere: minima can be flat, a forearm
 //! may rotate without load on a muscle. Of those the one of least effort is kept. A limb without a task that hangs in the start is not held up: postures
 //! with fewer such limbs come first, whatever their efforts (`raised_limbs.rs`). Postures whose tasks are farther away than in the best one, that slipped or
-//! fell, are counted and left out, and so are those that are the same way to stand as a better one (`ways_to_stand.rs`), or need more than
+//! fell, are counted and left out, and so are those that are the same way to stand as a better one (`different_ways.rs`), or need more than
 //! twice the least effort and 0.05 besides.
 
 mod candidate;
 mod described_anew;
 mod description;
+mod different_ways;
 mod finder;
 mod goal_starts;
 mod hanging_limbs;
@@ -43,9 +44,10 @@ mod outcome;
 mod raised_limbs;
 mod scattered;
 mod search;
+mod settle;
 mod solvers;
 mod stability;
-mod ways_to_stand;
+mod way_to_stand;
 
 pub use described_anew::described_anew;
 pub use finder::equilibria_watched;

@@ -5,6 +5,7 @@ use super::description::relative_torques;
 use super::hanging_limbs::{hanging_limbs, in_mid_range};
 use super::raised_limbs::LimbsWithoutTask;
 use super::search::{Search, SearchError, Stage};
+use super::way_to_stand::WayToStand;
 use crate::constraint::HalfSpace;
 use crate::contact::{Condition, Missing};
 use crate::effort::hessian::HessianModel;
@@ -191,11 +192,13 @@ impl<'a> Solvers<'a> {
         }
         relaxed.levels.remove(slot);
         let supports = search.supports.iter().enumerate();
+        let shares = (0..search.supports.len()).map(|i| contact.share(i)).collect();
         let candidate = Candidate {
             excess: supports.map(|(i, support)| (contact.share(i) - support.share_max).max(0.0)).sum(),
             raised_limbs: limbs.raised(search, kinematics),
             relative_torques: relative_torques(model, engine),
             places: places(model, kinematics),
+            way: WayToStand::of(model, kinematics, shares),
             starts: vec![],
             relaxed,
         };
