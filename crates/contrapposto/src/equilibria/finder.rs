@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::candidate::{Candidate, Worth, keep_worth};
 use super::description::describe;
+use super::different_ways::DifferentWays;
+use super::mirror::Mirror;
 use super::other_places::other_places;
 use super::outcome::{Equilibria, MOST_MINIMA, RelaxedPosture};
 use super::raised_limbs::LimbsWithoutTask;
@@ -342,7 +344,8 @@ impl<'a> Finder<'a> {
         // Of postures that yielded, slipped or have not converged one is shown where there is no other.
         let yielded = self.found.len() - self.selected(Stage::Converged).len().max(1);
         let worth = self.worth_an_answer();
-        let mut ways = self.different_ways();
+        let mirror = matches!(self.search.aim, Aim::WaysOnEitherSide).then(|| Mirror::of(self.search.model)).flatten();
+        let mut ways = DifferentWays::new(self.search, mirror);
         let answers: Vec<usize> = worth.iter().copied().filter(|&i| ways.take(&self.found[i])).collect();
         let raised = self.found.len() - yielded - worth.len();
         let engine = self.solvers.engine(Stage::Converged);
@@ -359,7 +362,7 @@ impl<'a> Finder<'a> {
     }
 }
 
-/// Where a solve of the next stage starts, and the labels of its starts.
+/// The posture in which a solve of the next stage starts, and its labels.
 pub(super) fn posture_and_labels(found: Candidate) -> (Posture, Vec<String>) {
     (found.relaxed.posture, found.starts)
 }

@@ -4,7 +4,7 @@ use super::candidate::{Candidate, Worth, keep_worth};
 use super::different_ways::{DifferentWays, MOST_POSTURES};
 use super::finder::{Finder, posture_and_labels};
 use super::mirror::Mirror;
-use super::search::{Aim, Stage};
+use super::search::Stage;
 
 /// Postures that are settled at once; only then is it seen whether more are wanted. Assumed.
 const SETTLED_AT_ONCE: usize = 4;
@@ -23,17 +23,13 @@ impl Finder<'_> {
         }
     }
 
-    /// Number of ways to stand that take no more effort, five at most.
+    /// Number of ways to stand that take no more effort, five at most. Mirror images count once even where both are answers, so that every aim
+    /// finds the same postures.
     fn ways_up_to(&self, effort: f64) -> usize {
-        let mut ways = self.different_ways();
+        let mut ways = DifferentWays::new(self.search, Mirror::of(self.search.model));
         let of_less = self.worth_an_answer().into_iter().filter(|&i| self.found[i].relaxed.effort <= effort);
         of_less.for_each(|i| _ = ways.take(&self.found[i]));
         ways.answers.len()
-    }
-
-    pub(super) fn different_ways(&self) -> DifferentWays {
-        let either_side = matches!(self.search.aim, Aim::WaysOnEitherSide);
-        DifferentWays::new(self.search, either_side.then(|| Mirror::of(self.search.model)).flatten())
     }
 
     /// Converged postures that are worth an answer, that of least effort first, with as few limbs held up as in any other.
@@ -56,6 +52,7 @@ impl Finder<'_> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
+    use super::super::search::Aim;
     use super::*;
     use crate::equilibria::{SCATTERED_STARTS, Search};
     use crate::model::{Adult, adult};
