@@ -9,11 +9,8 @@
 use contrapposto::equilibria::equilibria;
 use contrapposto::model::Model;
 use contrapposto::passive::{Coupled, CoupledTerm, PassiveLaw, RienerEdrich1999};
-use contrapposto::posture_solver::Options;
-use contrapposto_formats::read_relax;
+use contrapposto_formats::{RelaxScenario, read_relax};
 
-/// The options of the program's `relax`.
-const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
 /// Ends of the built-in curve of a woman of 60 kg (crates/contrapposto/data/passive.toml): torque, N m, rate, 1/rad, and angle, deg.
 const TORQUE: f64 = 30.0 * 60.0 / 73.0;
 const RATE: f64 = 8.0;
@@ -52,7 +49,7 @@ fn answers(name: &str, size: f64, coupling: f64) -> Vec<[f64; 4]> {
     for side in ["r", "l"] {
         scenario.model = coupled(scenario.model, side, size, coupling);
     }
-    let found = equilibria(&scenario.search(), OPTIONS).expect("the body stands");
+    let found = equilibria(&scenario.search(), RelaxScenario::OPTIONS).expect("the body stands");
     let angle = |name: &str, values: &[f64]| {
         values[scenario.model.coordinate(name).expect("a coordinate of the adult")].to_degrees()
     };

@@ -119,10 +119,9 @@ duration_s = 0.2
 step_s = 0.05
 "#;
 
-/// Runs at most a second of it, of a whole body at most four steps; every number of every sample must be finite, in memory and as written.
+/// Runs at most a second of it, of a whole body at most four steps (ten where a count of inputs is asked for); every number of every sample must be finite, in memory and as written.
 fn assert_sound(mut scenario: Scenario, message: &dyn Fn() -> String) {
     scenario.run.duration = scenario.run.duration.min(1.0);
-    // A body on its feet takes long; where another count of inputs is asked for, there is time for ten steps.
     let asked = std::env::var_os("CONTRAPPOSTO_MUTATIONS").is_some();
     let steps = match (scenario.has_supports_or_tasks(), asked) {
         (true, true) => 10.0,
