@@ -471,6 +471,37 @@ fn a_limb_that_hangs_in_the_start_hangs_in_every_answer_and_one_that_is_upright_
     }
 }
 
+/// As near to the target as steps without effort come, and at little more effort than where the place reached is asked for. Two targets.
+#[test]
+fn a_target_out_of_reach_is_missed_in_a_posture_of_little_effort() {
+    let options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
+    for target in [V::new(1.1, 1.5, 0.3), V::new(0.7, 1.9, -0.4)] {
+        let standing = Standing::new(None, Some(target));
+        let best = |standing: &Standing| {
+            let search = Search { aim: Aim::Least(&[]), scattered: 8, ..standing.search() };
+            equilibria(&search, options).unwrap().postures.remove(0).relaxed
+        };
+        let missed = best(&standing);
+        let mut kinematics = Kinematics::new(&standing.model);
+        kinematics.update(&standing.model, &missed.posture).unwrap();
+        let hand = standing.model.segment("hand_l").unwrap();
+        let place = kinematics.station(&standing.model, hand, V::new(0.0, -0.05, 0.0));
+        let asked = best(&Standing::new(None, Some(place)));
+        let goals = standing.goals[..1].to_vec();
+        let supports = standing.supports.clone();
+        let mut engine =
+            Engine::with_supports(&standing.model, &standing.start, supports, goals, &[], options).unwrap();
+        let nearest = engine.solve(&standing.start).unwrap().levels[0].length;
+        let (distance, effort) = (missed.levels[0].length, missed.effort);
+        println!(
+            "{target:?}: missed by {distance:.5}, nearest {nearest:.5} m; effort {effort:.4}, asked {:.4}",
+            asked.effort
+        );
+        assert!(distance > 0.05 && (distance - nearest).abs() < 1e-3 && asked.levels[0].length < 1e-3);
+        assert!(effort < 1.05 * asked.effort, "{effort} {}", asked.effort);
+    }
+}
+
 /// Local minima of an earlier search stand in for starts that are scattered.
 #[test]
 fn a_search_that_is_told_earlier_minima_scatters_no_starts_and_finds_the_same() {

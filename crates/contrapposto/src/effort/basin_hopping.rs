@@ -140,6 +140,16 @@ impl BasinHopping {
         Ok(Some(LocalMinimum { steps, converged, ..last }))
     }
 
+    /// The errors of the levels above effort in `posture`, as [`EffortProblem::shortfall`].
+    pub(crate) fn shortfall(
+        &mut self,
+        problem: &EffortProblem<'_>,
+        posture: &Posture,
+    ) -> Result<Vec<f64>, JointTorquesError> {
+        self.sqp.start_at(problem, posture, problem.contact.forces())?;
+        Ok(self.sqp.iterate.shortfall(problem))
+    }
+
     /// Descends from `posture` to the nearest local minimum, in the reduced problem first; returns it and the number of steps.
     fn descend_to_nearest(
         &mut self,

@@ -13,7 +13,7 @@ use crate::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::{FixedIn, Load, LoadKind};
-use crate::tasks::Task;
+use crate::tasks::{PriorityLevel, Task};
 use hierarchical_least_squares::Level;
 use hierarchical_least_squares::linalg::{add_outer_products, add_scaled};
 
@@ -66,6 +66,15 @@ impl Iterate {
     /// Sum of the violations of all constraints.
     pub(crate) fn violation(&self) -> f64 {
         self.lower.iter().zip(&self.upper).map(|(lower, upper)| lower.max(0.0) - upper.min(0.0)).sum()
+    }
+
+    /// The errors of the tasks and half-spaces above effort, by row of the constraint levels; 0 for supports and limits, which have to hold.
+    pub(crate) fn shortfall(&self, problem: &EffortProblem<'_>) -> Vec<f64> {
+        let first = problem.contact.root().len();
+        let held = first + problem.places.rows() + problem.limits.rows();
+        let end = first + problem.constraint_levels().map(PriorityLevel::rows).sum::<usize>();
+        let missed = |row: usize| if row < held { 0.0 } else { self.lower[row].max(0.0) + self.upper[row].min(0.0) };
+        (first..end).map(missed).collect()
     }
 
     /// Computes everything for `posture` and `forces`.
@@ -161,6 +170,11 @@ impl Iterate {
             self.constraints.resize(self.constraints.len() + forces, 0.0);
             self.lower.push(f64::NEG_INFINITY);
             self.upper.push(-space.violation(self.posture.values()));
+        }
+        let limits = self.lower.iter_mut().zip(&mut self.upper).skip(problem.contact.root().len());
+        for ((lower, upper), missed) in limits.zip(problem.shortfall) {
+            *lower -= missed;
+            *upper -= missed;
         }
     }
 

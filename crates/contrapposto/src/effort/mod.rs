@@ -15,7 +15,7 @@ pub(crate) mod problem;
 mod qp;
 mod reduced_problem;
 mod second_by_axes;
-mod sqp;
+pub(crate) mod sqp;
 #[cfg(test)]
 mod standing_adult;
 mod tolerances;

@@ -22,6 +22,9 @@ pub(crate) struct EffortProblem<'b> {
     pub(crate) limits: &'b PriorityLevel,
     /// Levels above effort.
     pub(crate) above: &'b [PriorityLevel],
+    /// By row of the constraint levels: the error that a descent keeps, as [`Iterate::shortfall`](super::iterate::Iterate::shortfall) gives it;
+    /// empty where all rows are to be met.
+    pub(crate) shortfall: &'b [f64],
     /// The level of effort.
     pub(crate) effort: &'b PriorityLevel,
     pub(crate) loads: &'b [Load],

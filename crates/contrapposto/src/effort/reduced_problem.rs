@@ -3,6 +3,7 @@
 //! On a standing body that part is everything above the pelvis. Its torques do not depend on the contact forces, so local minima
 //! can be searched for in a smaller problem, on the reduced model in which all other joints are fixed.
 
+use super::iterate::Iterate;
 use super::problem::EffortProblem;
 use crate::contact::{ContactForces, rates_that_move};
 use crate::joint_torques::JointTorquesError;
@@ -23,6 +24,7 @@ pub(crate) struct ReducedProblem {
     places: PriorityLevel,
     limits: PriorityLevel,
     above: Vec<PriorityLevel>,
+    shortfall: Vec<f64>,
     contact: ContactForces,
 }
 
@@ -80,7 +82,7 @@ impl ReducedProblem {
                 task.weights.retain(|_| place.next().is_some_and(Option::is_some));
             }
         }
-        Ok(Some(Self {
+        let mut reduced = Self {
             free: free().filter_map(|rate| places[*rate]).collect(),
             contact: ContactForces::without_supports(&reduced),
             model: reduced,
@@ -88,7 +90,16 @@ impl ReducedProblem {
             places: PriorityLevel::default(),
             limits: PriorityLevel { tasks: limits, ..PriorityLevel::default() },
             above,
-        }))
+            shortfall: vec![],
+        };
+        if !problem.shortfall.is_empty() {
+            let part = reduced.problem(problem);
+            let mut iterate = Iterate::new(&reduced.model);
+            iterate.posture.values_mut().copy_from_slice(posture.values());
+            iterate.evaluate(&part)?;
+            reduced.shortfall = iterate.shortfall(&part);
+        }
+        Ok(Some(reduced))
     }
 
     /// The problem to be solved, under the loads of the whole `problem`.
@@ -98,6 +109,7 @@ impl ReducedProblem {
             places: &self.places,
             limits: &self.limits,
             above: &self.above,
+            shortfall: &self.shortfall,
             effort: &self.effort,
             free: &self.free,
             contact: &self.contact,
@@ -157,6 +169,33 @@ mod tests {
         println!("seed {SEED}: off by {worst:.1e} at most");
         assert!(worst < 1e-12, "{worst}");
     }
+
+    /// With the errors of a posture kept, the levels above effort are met there in the whole problem and in the reduced one; what holds the body is
+    /// asked for as before.
+    #[test]
+    fn levels_are_met_where_their_errors_are_kept() {
+        let mut most = 0f64;
+        StandingAdult::new().each_posture(&mut Pcg64Mcg::new(SEED.into()), 20, |_, problem, whole| {
+            let shortfall = whole.shortfall(problem);
+            let keeps = EffortProblem { shortfall: &shortfall, ..*problem };
+            let reduced = ReducedProblem::of(&keeps, &whole.posture).unwrap().unwrap();
+            let rows = |levels: &[PriorityLevel]| levels.iter().map(PriorityLevel::rows).sum::<usize>();
+            let held = problem.contact.root().len() + problem.places.rows();
+            let mut kept = Iterate::new(problem.model);
+            (kept.posture, kept.forces) = (whole.posture.clone(), whole.forces.clone());
+            kept.evaluate(&keeps).unwrap();
+            let part = evaluated(&reduced.problem(&keeps), &whole.posture);
+            for (limits, own) in [(&kept.lower, &whole.lower), (&kept.upper, &whole.upper)] {
+                assert_eq!(limits[..held], own[..held]);
+                assert_eq!(limits[held + rows(problem.above)..], own[held + rows(problem.above)..]);
+                assert!(limits[held..held + rows(problem.above)].iter().all(|limit| limit.abs() < 1e-12));
+                most = own[held..held + rows(problem.above)].iter().fold(most, |most, limit| most.max(limit.abs()));
+            }
+            assert!(part.violation() < 1e-12, "seed {SEED}: {}", part.violation());
+        });
+        assert!(most > 0.01, "seed {SEED}: {most}");
+    }
+
     /// Placements, torques and gradients by rate and entry, and the centre of mass.
     fn evaluate_statics(
         model: &Model,

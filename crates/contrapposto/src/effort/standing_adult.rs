@@ -79,6 +79,7 @@ impl StandingAdult {
                 places: &places,
                 limits: &PriorityLevel::default(),
                 above: std::slice::from_ref(&self.above),
+                shortfall: &[],
                 effort: &self.effort,
                 loads: &self.loads,
                 free: &self.free,

@@ -27,6 +27,11 @@ impl Worth {
     /// To be an answer: assumed, one muscle group at 22 percent of its strength besides. Where a body can hang folded on its ligaments
     /// at no effort, standing upright stays an answer.
     pub(super) const ANSWER: Self = Self { multiple: 2.0, besides: 0.05 };
+
+    /// The effort up to which, where the least is so much.
+    pub(super) fn limit(self, least: f64) -> f64 {
+        self.multiple * least + self.besides
+    }
 }
 
 /// A posture that a solve has reached.
@@ -97,7 +102,7 @@ impl Candidate {
 pub(super) fn keep_worth(found: &[Candidate], selected: &mut Vec<usize>, worth: Worth) {
     let effort = |i: &usize| found[*i].relaxed.effort;
     let least = selected.iter().map(effort).fold(f64::INFINITY, f64::min);
-    selected.retain(|i| effort(i) <= worth.multiple * least + worth.besides);
+    selected.retain(|i| effort(i) <= worth.limit(least));
 }
 
 /// Centre of mass of every segment, ground, m.

@@ -17,6 +17,7 @@ use crate::contact::Missing;
 use crate::kinematics::Kinematics;
 use crate::posture::Posture;
 use crate::posture_solver::{EngineError, Options};
+use crate::tasks::PriorityLevel;
 
 /// Times that goal angles are taken, each time from a better posture.
 const ROUNDS: usize = 2;
@@ -117,10 +118,11 @@ impl<'a> Finder<'a> {
     /// Solves from all starts, a few steps each.
     fn explore(&mut self) -> Result<(), SearchError> {
         let places = other_places(self.search.model, self.search.supports).into_iter();
-        let at_start = (vec![], "the start".to_owned());
-        let places = std::iter::once(at_start).chain(places.map(|(task, label)| (vec![task], label)));
+        let at_start = (PriorityLevel::default(), "the start".to_owned());
+        let places = std::iter::once(at_start).chain(places.map(|(task, label)| (task.into(), label)));
+        self.solvers.reach_from_start(&mut self.steps);
         self.solve_all(
-            places.map(|(tasks, label)| self.exploratory(self.search.start, Way::ToTasks(tasks), label)).collect(),
+            places.map(|(level, label)| self.exploratory(self.search.start, Way::To(level), label)).collect(),
         );
         let mut explored: Vec<Candidate> = vec![];
         for _ in 0..if self.is_told() { 1 } else { ROUNDS } {
@@ -144,7 +146,7 @@ impl<'a> Finder<'a> {
     }
 
     pub(super) fn exploratory(&self, from: &Posture, way: Way, label: String) -> Start {
-        Start { stage: Stage::Exploratory, from: from.clone(), way, labels: vec![label], unless_found: None }
+        Start { way, ..Start::at(Stage::Exploratory, from.clone(), vec![label]) }
     }
 
     /// Descends from every different posture that was explored and is worth it, and from those that are known; seeks lower local minima from
@@ -194,12 +196,12 @@ impl<'a> Finder<'a> {
 
     /// Solves in a stage from postures as they are.
     pub(super) fn solve_straight(&mut self, stage: Stage, from: Vec<(Posture, Vec<String>)>) {
-        let start = |(from, labels)| Start { stage, from, way: Way::Nothing, labels, unless_found: None };
+        let start = |(from, labels)| Start::at(stage, from, labels);
         self.solve_all(from.into_iter().map(start).collect());
     }
 
     /// The postures of a stage that are worth going on from, that of least effort first.
-    fn worth(&self, stage: Stage, worth: Worth) -> Vec<Candidate> {
+    pub(super) fn worth(&self, stage: Stage, worth: Worth) -> Vec<Candidate> {
         let mut candidates = self.selected(stage);
         candidates.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
         keep_worth(&self.found, &mut candidates, worth);
@@ -287,7 +289,8 @@ impl<'a> Finder<'a> {
         }
         let Search { model, start, locked, scattered: count, .. } = *self.search;
         let from = |k| scattered(model, start, locked, k);
-        let start = |k| self.exploratory(&from(k), Way::ToTasks(vec![]), format!("scattered start {}", k + 1));
+        let start =
+            |k| self.exploratory(&from(k), Way::To(PriorityLevel::default()), format!("scattered start {}", k + 1));
         self.solve_all((0..count).map(start).collect());
     }
 
@@ -297,12 +300,16 @@ impl<'a> Finder<'a> {
         let mut known = self.selected(Stage::Converged);
         known.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
         let raised = known.iter().skip(1).filter(|&&i| self.found[i].raised_limbs > 0).take(most);
-        let start = |&i: &usize| Start {
-            stage: Stage::Converged,
-            from: self.found[i].relaxed.posture.clone(),
-            way: Way::Hanging,
-            labels: vec!["limbs that carry nothing hang".to_owned()],
-            unless_found: None,
+        let worth = known.first().map_or(f64::INFINITY, |&first| Worth::START.limit(self.found[first].relaxed.effort));
+        let start = |&i: &usize| {
+            let known = &self.found[i];
+            let labels = vec!["limbs that carry nothing hang".to_owned()];
+            let start = Start::at(Stage::Converged, known.relaxed.posture.clone(), labels);
+            Start {
+                way: Way::Hanging,
+                most_effort: if known.raised_limbs == 0 { worth } else { f64::INFINITY },
+                ..start
+            }
         };
         self.solve_all(known.first().into_iter().chain(raised).map(start).collect());
     }

@@ -9,6 +9,7 @@ use crate::constraint::HalfSpace;
 use crate::hybrid::{Problem, Strategy, minimise};
 use crate::model::CoordinateKind;
 use crate::posture::Posture;
+use crate::tasks::PriorityLevel;
 
 /// Coordinates whose goal angles are starts of their own.
 const SINGLE_GOALS: usize = 6;
@@ -36,7 +37,8 @@ impl Finder<'_> {
             let mut space = HalfSpace::new(n);
             space.ask_for(from.values(), &goal.step).then_some(space)
         });
-        self.exploratory(from, Way::ToGoals(spaces.collect()), label)
+        let level = PriorityLevel { half_spaces: spaces.collect(), ..PriorityLevel::default() };
+        self.exploratory(from, Way::To(level), label)
     }
 
     /// Searches from goal angles of both strategies in a posture: from all goals of a strategy together, then from each goal of the

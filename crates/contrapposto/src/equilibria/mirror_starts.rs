@@ -2,20 +2,21 @@
 //!
 //! Where the two limbs of a pair have different roles, as a hand that works and a hand that rests, these limbs keep their angles.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, Worth};
 use super::finder::Finder;
 use super::hanging_limbs::{free_limbs, has_task};
 use super::mirror::Mirror;
 use super::search::{Search, Stage};
 use super::solvers::{Start, Way};
+use crate::tasks::PriorityLevel;
 
 /// Best postures whose mirror images are converged from.
 const MIRRORED: usize = 3;
 
 impl Finder<'_> {
-    /// Solves from the mirror image of each explored posture whose image was not found itself.
+    /// Solves from the mirror image of each explored posture that takes little enough effort for an answer and whose image was not found itself.
     pub(super) fn explore_mirror_images(&mut self) {
-        let images = self.images(&self.found);
+        let images = self.images(&self.worth(Stage::Exploratory, Worth::ANSWER));
         let start = |image: Candidate| {
             let start = from_image(Stage::Exploratory, &image);
             Start { unless_found: Some(image), ..start }
@@ -28,7 +29,9 @@ impl Finder<'_> {
         let mut best = self.selected(Stage::Converged);
         best.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
         let images = self.images(best.into_iter().take(MIRRORED).map(|i| &self.found[i]));
-        self.solve_all(images.iter().map(|image| from_image(Stage::Settled, image)).collect());
+        let worth = images.first().map_or(f64::INFINITY, |best| Worth::START.limit(best.relaxed.effort));
+        let start = |image| Start { most_effort: worth, ..from_image(Stage::Settled, image) };
+        self.solve_all(images.iter().map(start).collect());
     }
 
     /// The mirror images of postures, where the body has them.
@@ -42,7 +45,7 @@ impl Finder<'_> {
 /// The start at a mirror image.
 fn from_image(stage: Stage, image: &Candidate) -> Start {
     let labels = vec![format!("mirror image of: {}", image.starts[0])];
-    Start { stage, from: image.relaxed.posture.clone(), way: Way::ToTasks(vec![]), labels, unless_found: None }
+    Start { way: Way::To(PriorityLevel::default()), ..Start::at(stage, image.relaxed.posture.clone(), labels) }
 }
 
 /// The coordinates of limbs that have another role than their partners: of the two, one has a support, a task or a load more.

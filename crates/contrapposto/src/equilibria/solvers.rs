@@ -6,7 +6,6 @@ use super::hanging_limbs::{hanging_limbs, in_mid_range};
 use super::raised_limbs::LimbsWithoutTask;
 use super::search::{Search, SearchError, Stage};
 use super::way_to_stand::WayToStand;
-use crate::constraint::HalfSpace;
 use crate::contact::{Condition, Missing};
 use crate::effort::hessian::HessianModel;
 use crate::posture::Posture;
@@ -21,6 +20,8 @@ const APPROACH_STEPS: usize = 40;
 const ALLOWED_MISSING: [f64; 4] = [1e-3, 1e-3, 1e-8, 1e-8];
 /// Change of every rate below which the approach to the tasks ends, rad or m.
 const APPROACH_TOLERANCE: f64 = 1e-6;
+/// A start is given up where its way ends farther from the tasks by so much than the way from the start of the search, in their units. Assumed.
+const FARTHER: f64 = 0.05;
 /// Distance of the ends of limbs from hanging up to which an approach is not tried in another way, m.
 const HANGING: f64 = 0.01;
 
@@ -35,16 +36,24 @@ pub(super) struct Start {
     pub(super) labels: Vec<String>,
     /// The start is left out where this posture was found already.
     pub(super) unless_found: Option<Candidate>,
+    /// The start is given up where the local minimum of effort near it takes more.
+    pub(super) most_effort: f64,
+}
+
+impl Start {
+    /// The start at a posture as it is.
+    pub(super) fn at(stage: Stage, from: Posture, labels: Vec<String>) -> Self {
+        Self { stage, from, way: Way::Nothing, labels, unless_found: None, most_effort: f64::INFINITY }
+    }
 }
 
 /// Way from the start to the posture where effort begins to count.
 #[derive(Clone, Debug)]
 pub(super) enum Way {
     Nothing,
-    /// The body moves to the tasks, and below them to these: from afar tasks and effort would obstruct each other.
-    ToTasks(Vec<Task>),
-    /// Goal angles are solved for with effort, as half-spaces: they choose the start, and do not constrain the answer.
-    ToGoals(Vec<HalfSpace>),
+    /// The body moves to the tasks of the search, and below them to these tasks and goal angles: from afar tasks and effort would obstruct each
+    /// other. The start is given up where this ends farther from the tasks than it does from the start of the search.
+    To(PriorityLevel),
     /// The limbs that carry nothing hang as far as tasks allow.
     Hanging,
 }
@@ -74,7 +83,7 @@ impl std::ops::AddAssign for Steps {
 pub(super) struct Attempt {
     /// Of the way to the posture where effort begins to count.
     pub(super) before: Steps,
-    /// `None` where there is no such posture.
+    /// `None` where the start was given up.
     pub(super) solved: Option<Solved>,
 }
 
@@ -106,8 +115,10 @@ pub(super) struct Solvers<'a> {
     engines: [Engine<'a>; 3],
     /// Without effort.
     approach: Engine<'a>,
-    /// Index of the level of goal angles among the engines' levels.
+    /// Index of the level below the tasks of the search that a way may ask for, among the engines' levels.
     pub(super) slot: usize,
+    /// By level above that: distance from the tasks at which the way from the start of the search ends. Empty until it is known.
+    reached: Vec<f64>,
 }
 
 impl<'a> Solvers<'a> {
@@ -135,7 +146,7 @@ impl<'a> Solvers<'a> {
             [engine(exploratory, 0, &levels)?, engine(most, minima.min(1), &levels)?, engine(most, minima, &levels)?];
         engines[0].set_hessian_model(HessianModel::Partial);
         let approach = engine(APPROACH_STEPS, 0, &levels[..=slot])?;
-        Ok(Self { search, engines, approach, slot })
+        Ok(Self { search, engines, approach, slot, reached: vec![] })
     }
 
     /// The engine of a stage.
@@ -147,27 +158,41 @@ impl<'a> Solvers<'a> {
         }]
     }
 
+    /// Finds out how near the tasks are from the start of the search.
+    pub(super) fn reach_from_start(&mut self, steps: &mut Steps) {
+        self.approached(&PriorityLevel::default(), self.search.start, steps);
+        self.reached = (0..self.slot).map(|level| self.approach.error(level)).collect();
+    }
+
     /// Solves from a start.
     pub(super) fn attempt(&mut self, start: &Start, limbs: &LimbsWithoutTask) -> Attempt {
         let mut before = Steps::default();
         let from = match &start.way {
             Way::Nothing => Some(start.from.clone()),
-            Way::ToTasks(tasks) => Some(self.approached(tasks, &start.from, &mut before).1),
-            Way::ToGoals(spaces) => self.at_goals(spaces, start, &mut before),
+            Way::To(level) => self.near_tasks(level, &start.from, &mut before),
             Way::Hanging => self.with_hanging_limbs(&start.from, &mut before),
         };
+        let from = from.and_then(|from| self.worth_solving(start, from, &mut before));
         Attempt { before, solved: from.map(|from| self.solve(start.stage, &from, limbs)) }
     }
 
-    fn at_goals(&mut self, spaces: &[HalfSpace], start: &Start, before: &mut Steps) -> Option<Posture> {
-        let slot = self.slot;
-        let engine = self.engine(start.stage);
-        engine.levels_mut()[slot].half_spaces = spaces.to_vec();
-        let under = engine.solve_watched(&start.from, |step, _| before.changes += step.work() - 1);
-        engine.levels_mut()[slot].half_spaces.clear();
-        let under = under.ok()?;
-        before.steps += under.steps;
-        Some(under.posture)
+    /// The posture moved to the tasks of the search, and below them to a level; `None` where that ends farther from the tasks than the way from
+    /// the start of the search does.
+    fn near_tasks(&mut self, below: &PriorityLevel, from: &Posture, steps: &mut Steps) -> Option<Posture> {
+        let (_, posture) = self.approached(below, from, steps);
+        let farther = self.reached.iter().enumerate().map(|(level, reached)| self.approach.error(level) - reached);
+        let difference = farther.into_iter().find(|by| by.abs() > FARTHER);
+        difference.is_none_or(|by| by < 0.0).then_some(posture)
+    }
+
+    /// The posture itself, or, where the effort of the start is limited, the local minimum near it; `None` where that takes more.
+    fn worth_solving(&mut self, start: &Start, from: Posture, steps: &mut Steps) -> Option<Posture> {
+        if start.most_effort == f64::INFINITY {
+            return Some(from);
+        }
+        let near = self.engine(Stage::Nearest).near_minimum(&from).ok()?;
+        steps.steps += near.steps;
+        (near.effort <= start.most_effort).then_some(near.posture)
     }
 
     /// Solves from a posture with the engine of a stage.
@@ -209,11 +234,12 @@ impl<'a> Solvers<'a> {
     pub(super) fn with_hanging_limbs(&mut self, posture: &Posture, steps: &mut Steps) -> Option<Posture> {
         let (model, supports) = (self.search.model, self.search.supports);
         let tasks = hanging_limbs(model, supports, posture).ok()?;
-        let (distance, near) = self.approached(&tasks, posture, steps);
+        let hanging = PriorityLevel { tasks, ..PriorityLevel::default() };
+        let (distance, near) = self.approached(&hanging, posture, steps);
         if distance > HANGING {
             // Along the shortest turn a joint may meet the end of its range: the other way begins in the middle of the ranges.
             let middle = in_mid_range(model, supports, &near);
-            let (other, posture) = self.approached(&tasks, &middle, steps);
+            let (other, posture) = self.approached(&hanging, &middle, steps);
             if other < distance - HANGING {
                 return Some(posture);
             }
@@ -221,9 +247,9 @@ impl<'a> Solvers<'a> {
         Some(near)
     }
 
-    /// The posture moved to the tasks of the search, and below them to these, and its distance from these.
-    fn approached(&mut self, tasks: &[Task], from: &Posture, steps: &mut Steps) -> (f64, Posture) {
-        self.approach.levels_mut()[self.slot].tasks = tasks.to_vec();
+    /// The posture moved to the tasks of the search, and below them to a level, and its distance from that.
+    fn approached(&mut self, below: &PriorityLevel, from: &Posture, steps: &mut Steps) -> (f64, Posture) {
+        self.approach.levels_mut()[self.slot].clone_from(below);
         let mut posture = from.clone();
         self.approach.restart();
         for _ in 0..APPROACH_STEPS {
@@ -234,7 +260,7 @@ impl<'a> Solvers<'a> {
             }
         }
         let distance = self.approach.evaluate(&posture).map_or(f64::INFINITY, |()| self.approach.error(self.slot));
-        self.approach.levels_mut()[self.slot].tasks.clear();
+        self.approach.levels_mut()[self.slot] = PriorityLevel::default();
         (distance, posture)
     }
 }

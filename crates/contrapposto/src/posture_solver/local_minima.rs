@@ -4,12 +4,16 @@ use super::engine::Engine;
 use super::error::EngineError;
 use super::report::SolvedPosture;
 use super::settings::Rates;
+use super::tolerances::{LEAST_NEARING, MISSED_LEVELS, STEPS_OF_NEARING};
 use crate::contact::Balance;
+use crate::effort::problem::EffortProblem;
+use crate::effort::sqp::LocalMinimum;
+use crate::joint_torques::JointTorquesError;
 use crate::posture::Posture;
 
 impl Engine<'_> {
     /// Moves `posture` to the lowest of `count` local minima; returns whether nothing is left for steps to do, and the number
-    /// of steps that it took.
+    /// of steps that it took. Where levels above effort are out of reach, they stay missed as they are.
     pub(super) fn compare_local_minima(
         &mut self,
         posture: &mut Posture,
@@ -19,13 +23,50 @@ impl Engine<'_> {
             return Ok((false, 0));
         }
         self.evaluate(posture)?;
-        let Some(problem) = self.settings.effort_problem(&self.iterate.contact, Rates::Free) else {
-            return Ok((false, 0));
-        };
-        let Some(minimum) = self.basin_hopping.minimise(&problem, posture, count)? else { return Ok((false, 0)) };
+        let (mut minimum, mut steps) = (self.lowest_minimum(posture, count, &[])?, 0);
+        if minimum.is_none() {
+            let (shortfall, made) = self.shortfall_out_of_reach(posture)?;
+            steps = made;
+            if let Some(shortfall) = shortfall {
+                minimum = self.lowest_minimum(posture, count, &shortfall)?;
+            }
+        }
+        let Some(minimum) = minimum else { return Ok((false, steps)) };
         self.evaluate(posture)?;
         let held = self.iterate.contact.balance() == Balance::Held;
-        Ok((minimum.converged && held && self.settings.effort_is_last(), minimum.steps))
+        Ok((minimum.converged && held && self.settings.effort_is_last(), steps + minimum.steps))
+    }
+
+    fn lowest_minimum(
+        &mut self,
+        posture: &mut Posture,
+        count: usize,
+        shortfall: &[f64],
+    ) -> Result<Option<LocalMinimum>, JointTorquesError> {
+        let problem = self.settings.effort_problem(&self.iterate.contact, Rates::Free);
+        let problem = problem.map(|problem| EffortProblem { shortfall, ..problem });
+        problem.map_or(Ok(None), |problem| self.basin_hopping.minimise(&problem, posture, count))
+    }
+
+    /// The errors that descents have to keep ([`EffortProblem::shortfall`]) where levels above effort are missed and some steps bring `posture` no
+    /// nearer to them, else `None`; and the number of steps made.
+    fn shortfall_out_of_reach(&mut self, posture: &mut Posture) -> Result<(Option<Vec<f64>>, usize), EngineError> {
+        let distance = |engine: &Self| {
+            (0..engine.settings.effort_level.unwrap_or(0)).map(|level| engine.error(level)).sum::<f64>()
+        };
+        self.evaluate(posture)?;
+        let before = distance(self);
+        if before <= MISSED_LEVELS {
+            return Ok((None, 0));
+        }
+        for _ in 0..STEPS_OF_NEARING {
+            self.step(posture)?;
+        }
+        self.evaluate(posture)?;
+        let stays = (before - distance(self)).abs() <= LEAST_NEARING;
+        let problem = self.settings.effort_problem(&self.iterate.contact, Rates::Free).filter(|_| stays);
+        let shortfall = problem.map(|problem| self.basin_hopping.shortfall(&problem, posture)).transpose()?;
+        Ok((shortfall, STEPS_OF_NEARING))
     }
 
     /// Moves `posture` to the nearest local minimum of effort under the supports and the levels above effort, and
@@ -46,17 +87,21 @@ impl Engine<'_> {
     }
 
     /// The posture near the local minimum of effort that is nearest to `start`, by a descent that ends where little is to be gained; `start`
-    /// itself where the descent leaves supports or levels, or [`Options::local_minima`] is 0.
+    /// itself where the descent leaves supports or levels, or [`Options::local_minima`] is 0. Levels that `start` misses, and that some steps come no
+    /// nearer to, stay missed as they are.
     ///
     /// # Errors
     /// As [`Engine::step`].
     pub(crate) fn near_minimum(&mut self, start: &Posture) -> Result<SolvedPosture, EngineError> {
         self.restart();
-        self.evaluate(start)?;
         let (mut posture, mut steps) = (start.clone(), 0);
-        let descends = self.settings.options.local_minima > 0 && self.settings.can_descend();
-        if let Some(problem) = self.settings.effort_problem(&self.iterate.contact, Rates::Free).filter(|_| descends) {
-            steps = self.basin_hopping.near_minimum(&problem, &mut posture)?;
+        if self.settings.options.local_minima > 0 && self.settings.can_descend() {
+            let (shortfall, made) = self.shortfall_out_of_reach(&mut posture)?;
+            let problem = self.settings.effort_problem(&self.iterate.contact, Rates::Free);
+            if let Some(problem) = problem {
+                let problem = EffortProblem { shortfall: shortfall.as_deref().unwrap_or_default(), ..problem };
+                steps = made + self.basin_hopping.near_minimum(&problem, &mut posture)?;
+            }
             self.settings.keep_ranges(&mut posture);
         }
         self.evaluate(&posture)?;

@@ -151,6 +151,7 @@ impl<'a> Settings<'a> {
             places,
             limits: &self.limits,
             above: &self.levels[..level],
+            shortfall: &[],
             effort: &self.levels[level],
             loads: &self.loads,
             free: match rates {

@@ -114,3 +114,9 @@ pub(super) const IDLE_STEPS: usize = 3;
 pub(super) const CUT_SHORT: f64 = 0.9;
 /// Steps of a body on supports from one attempt of a descent to the next, while it does not come to rest.
 pub(super) const STEPS_BEFORE_DESCENT: usize = 50;
+/// m or rad. Sum of the errors of the levels above effort from which on they may be out of reach: descents allow as much.
+pub(super) const MISSED_LEVELS: f64 = 1e-3;
+/// Steps in which a body on supports that can come nearer to levels above effort does so (assumed).
+pub(super) const STEPS_OF_NEARING: usize = 5;
+/// m or rad. Change of the sum of their errors in these steps up to which the levels count as out of reach (assumed).
+pub(super) const LEAST_NEARING: f64 = 1e-5;
