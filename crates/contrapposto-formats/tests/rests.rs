@@ -191,10 +191,11 @@ fn a_rest_that_makes_no_sense_is_refused_by_name() {
     assert!(friction.contains("friction is 11"), "{friction}");
 }
 
+/// At a time when no muscle group seeks relief; it would have the hand taken up itself.
 #[test]
 fn a_hand_that_rests_is_taken_up_when_the_work_moves_away() {
-    let text = text("may_carry = [\"left_hand\"]", "duration_s = 245");
-    let event = "[[event]]\nat_s = 230\ntask = 1\ntarget_m = [0.40, 1.10, 0.20]\n[strategy]";
+    let text = text("may_carry = [\"left_hand\"]", "duration_s = 275").replace("0.76, 0.00]", "0.76, 0.05]");
+    let event = "[[event]]\nat_s = 260\ntask = 1\ntarget_m = [0.40, 1.10, 0.20]\n[strategy]";
     let scenario = read_scenario("bench.toml", text.replacen("[strategy]", event, 1).as_bytes(), None).unwrap();
     let (mut deepest, mut share) = (f64::NEG_INFINITY, 1.0);
     let mut missing = vec![];
@@ -208,10 +209,10 @@ fn a_hand_that_rests_is_taken_up_when_the_work_moves_away() {
     println!("{:?}", summary.foot_steps);
     assert_eq!(kinds, [StepKind::PutDown, StepKind::TakenOff]);
     let step = summary.foot_steps[1];
-    assert!(step.time.0 >= 230.0, "{step:?}");
+    assert!(step.time.0 >= 260.0, "{step:?}");
     assert!(deepest < 1e-3 && share == 0.0, "{deepest} m deep, {share} of the weight");
     let at = |time: f64| missing.iter().rfind(|(t, _)| *t <= time).unwrap().1;
-    let (before, after) = (at(step.time.0), at(245.0));
+    let (before, after) = (at(step.time.0), at(275.0));
     println!("{before} m off before the hand is taken up, {after} m at the end");
     assert!(
         step.relieves.is_none() && before > 0.02 && after < 1e-3,

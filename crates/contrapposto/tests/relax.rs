@@ -471,35 +471,60 @@ fn a_limb_that_hangs_in_the_start_hangs_in_every_answer_and_one_that_is_upright_
     }
 }
 
-/// As near to the target as steps without effort come, and at little more effort than where the place reached is asked for. Two targets.
-#[test]
-fn a_target_out_of_reach_is_missed_in_a_posture_of_little_effort() {
-    let options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
-    for target in [V::new(1.1, 1.5, 0.3), V::new(0.7, 1.9, -0.4)] {
-        let standing = Standing::new(None, Some(target));
-        let best = |standing: &Standing| {
-            let search = Search { aim: Aim::Least(&[]), scattered: 8, ..standing.search() };
-            equilibria(&search, options).unwrap().postures.remove(0).relaxed
+/// Two links about one axis, m long and hanging where both angles are 0; the first cannot turn by more than `most`, the second by more than 1.6.
+fn two_links(most: f64) -> Model {
+    let mut builder = ModelBuilder::new("two links", V::new(0.0, -9.81, 0.0));
+    let group = |name: &str| MuscleGroup {
+        name: name.to_owned(),
+        strength: Strength::constant(50.0),
+        fatigue: FatigueLaw::Tireless,
+    };
+    for (name, parent, most) in [("upper", None, most), ("lower", Some("upper"), 1.6)] {
+        let mut coordinate = CoordinateSpec::new(&format!("q of {name}"), (-most, most));
+        coordinate.groups = Some([group(&format!("{name} one way")), group(&format!("{name} the other way"))]);
+        let segment = SegmentSpec {
+            name: name.into(),
+            parent: parent.map(str::to_owned),
+            mass: 2.0,
+            center_of_mass: V::new(0.0, -0.5, 0.0),
+            inertia: Matrix3::zeros(),
+            joint: format!("joint of {name}"),
+            kind: JointKind::Hinge(V::z_axis()),
+            in_parent: Placement::translation(0.0, if parent.is_some() { -1.0 } else { 0.0 }, 0.0),
+            in_segment: Placement::identity(),
+            coordinates: vec![coordinate],
         };
-        let missed = best(&standing);
-        let mut kinematics = Kinematics::new(&standing.model);
-        kinematics.update(&standing.model, &missed.posture).unwrap();
-        let hand = standing.model.segment("hand_l").unwrap();
-        let place = kinematics.station(&standing.model, hand, V::new(0.0, -0.05, 0.0));
-        let asked = best(&Standing::new(None, Some(place)));
-        let goals = standing.goals[..1].to_vec();
-        let supports = standing.supports.clone();
-        let mut engine =
-            Engine::with_supports(&standing.model, &standing.start, supports, goals, &[], options).unwrap();
-        let nearest = engine.solve(&standing.start).unwrap().levels[0].length;
-        let (distance, effort) = (missed.levels[0].length, missed.effort);
-        println!(
-            "{target:?}: missed by {distance:.5}, nearest {nearest:.5} m; effort {effort:.4}, asked {:.4}",
-            asked.effort
-        );
-        assert!(distance > 0.05 && (distance - nearest).abs() < 1e-3 && asked.levels[0].length < 1e-3);
-        assert!(effort < 1.05 * asked.effort, "{effort} {}", asked.effort);
+        builder.segment(segment).unwrap();
     }
+    builder.build()
+}
+
+/// The upper link is asked for an angle beyond its range, and ends at the range; beside it the lower link takes the angle of least effort, found
+/// by trying all of them, from a start near another local minimum, at the end of its range.
+#[test]
+fn least_effort_beside_a_target_out_of_reach_is_that_of_a_scan() {
+    const MOST: f64 = 0.5;
+    let model = two_links(MOST);
+    let target = V::new(libm::sin(1.0), -libm::cos(1.0), 0.0);
+    let task = Point { segment: model.segment("upper").unwrap(), point: -V::y(), target, axes: [true, true, false] };
+    let goals = vec![Task::Point(task).into(), Task::Effort(Effort::whole(&model)).into()];
+    let start = Posture::new(vec![MOST, 1.5]);
+    let options = |local_minima| Options { max_step: 0.1, max_steps: 300, local_minima, ..Options::least_effort() };
+    let solve = |local_minima| {
+        let goals: Vec<PriorityLevel> = Clone::clone(&goals);
+        let mut engine = Engine::with_supports(&model, &start, vec![], goals, &[], options(local_minima)).unwrap();
+        engine.solve(&start).unwrap()
+    };
+    let mut body = JointTorques::new(&model);
+    let mut effort = |lower: f64| {
+        body.update(&model, &Posture::new(vec![MOST, lower]), &[], Quantities::ALL).unwrap();
+        body.active_torque().iter().map(|torque| (torque / 50.0).powi(2)).sum::<f64>()
+    };
+    let least = (-1600..=1600).map(|k| effort(1e-3 * f64::from(k))).fold(f64::INFINITY, f64::min);
+    let [steps, minimum] = [solve(0), solve(12)];
+    println!("scan {least:.6}, by steps alone {:.6}, with descents {:.6}: {minimum:?}", steps.effort, minimum.effort);
+    assert!((minimum.effort - least).abs() < 1e-5 * least, "{} {least}", minimum.effort);
+    assert!(steps.effort > 1.1 * least && (minimum.posture.values()[0] - MOST).abs() < 1e-9);
 }
 
 /// Local minima of an earlier search stand in for starts that are scattered.
