@@ -412,14 +412,14 @@ fn a_free_root_without_supports_stays() {
     assert_eq!(solve(4), solve(0));
 }
 
+/// A muscle group that holds 50 N m and never tires.
+fn group(name: &str) -> MuscleGroup {
+    MuscleGroup { name: name.to_owned(), strength: Strength::constant(50.0), fatigue: FatigueLaw::Tireless }
+}
+
 /// A link of 3 kg on a hinge at the ground, which turns by -180 to 360 deg, upright or hanging at 0, with a tip without mass fixed to its end.
 fn link(up: f64) -> Model {
     let mut builder = ModelBuilder::new("link", V::new(0.0, -9.81, 0.0));
-    let group = |name: &str| MuscleGroup {
-        name: name.to_owned(),
-        strength: Strength::constant(50.0),
-        fatigue: FatigueLaw::Tireless,
-    };
     let mut coordinate = CoordinateSpec::new("q", (-PI, 2.0 * PI));
     coordinate.groups = Some([group("one way"), group("the other way")]);
     let segment = |name: &str, mass: f64, kind: JointKind| SegmentSpec {
@@ -474,11 +474,6 @@ fn a_limb_that_hangs_in_the_start_hangs_in_every_answer_and_one_that_is_upright_
 /// Two links about one axis, m long and hanging where both angles are 0; the first cannot turn by more than `most`, the second by more than 1.6.
 fn two_links(most: f64) -> Model {
     let mut builder = ModelBuilder::new("two links", V::new(0.0, -9.81, 0.0));
-    let group = |name: &str| MuscleGroup {
-        name: name.to_owned(),
-        strength: Strength::constant(50.0),
-        fatigue: FatigueLaw::Tireless,
-    };
     for (name, parent, most) in [("upper", None, most), ("lower", Some("upper"), 1.6)] {
         let mut coordinate = CoordinateSpec::new(&format!("q of {name}"), (-most, most));
         coordinate.groups = Some([group(&format!("{name} one way")), group(&format!("{name} the other way"))]);

@@ -9,7 +9,7 @@ use super::way_to_stand::WayToStand;
 use crate::contact::{Condition, Missing};
 use crate::effort::hessian::HessianModel;
 use crate::posture::Posture;
-use crate::posture_solver::{Engine, EngineError, Options};
+use crate::posture_solver::{Engine, EngineError, Options, first_difference};
 use crate::tasks::{Effort, PriorityLevel, Task};
 
 /// Steps of an exploratory solve.
@@ -180,9 +180,8 @@ impl<'a> Solvers<'a> {
     /// the start of the search does.
     fn near_tasks(&mut self, below: &PriorityLevel, from: &Posture, steps: &mut Steps) -> Option<Posture> {
         let (_, posture) = self.approached(below, from, steps);
-        let farther = self.reached.iter().enumerate().map(|(level, reached)| self.approach.error(level) - reached);
-        let difference = farther.into_iter().find(|by| by.abs() > FARTHER);
-        difference.is_none_or(|by| by < 0.0).then_some(posture)
+        let errors = (0..self.slot).map(|level| self.approach.error(level));
+        (first_difference(errors, self.reached.iter().copied(), FARTHER) <= 0.0).then_some(posture)
     }
 
     /// The posture itself, or, where the effort of the start is limited, the local minimum near it; `None` where that takes more.

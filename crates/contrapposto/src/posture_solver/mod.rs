@@ -39,4 +39,5 @@ mod tolerances;
 pub use engine::Engine;
 pub use error::EngineError;
 pub use options::{Options, Reason, Step};
+pub(crate) use report::first_difference;
 pub use report::{LevelError, RowError, SolvedPosture};

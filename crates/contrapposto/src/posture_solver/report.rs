@@ -30,9 +30,20 @@ pub struct SolvedPosture {
 impl SolvedPosture {
     /// Whether the first level that differs noticeably is nearer than that of the `other` posture.
     pub(super) fn is_nearer_than(&self, other: &Self) -> bool {
-        let mut differences = self.levels.iter().zip(&other.levels).map(|(own, other)| own.length - other.length);
-        differences.find(|difference| difference.abs() > NEARER).is_some_and(|difference| difference < 0.0)
+        let [own, other] = [self, other].map(|posture| posture.levels.iter().map(|level| level.length));
+        first_difference(own, other, NEARER) < 0.0
     }
+}
+
+/// Difference of the errors of the first level that differ by more than `noticeable`, less than 0 where it is nearer than in `other`; 0 where none
+/// does.
+pub(crate) fn first_difference(
+    own: impl Iterator<Item = f64>,
+    other: impl Iterator<Item = f64>,
+    noticeable: f64,
+) -> f64 {
+    let mut differences = own.zip(other).map(|(own, other)| own - other);
+    differences.find(|difference| difference.abs() > noticeable).unwrap_or(0.0)
 }
 
 /// Error of one level in a posture.

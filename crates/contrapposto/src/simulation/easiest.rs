@@ -9,7 +9,7 @@ use crate::contact::{Support, rates_that_move};
 use crate::equilibria::{Aim, RelaxedPosture, Search, SearchError, equilibria};
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::posture_solver::{Options, SolvedPosture};
+use crate::posture_solver::{self, Options, SolvedPosture};
 use crate::statics::Load;
 use crate::tasks::{PriorityLevel, Task};
 
@@ -120,8 +120,7 @@ pub(super) fn is_better(solved: &SolvedPosture, effort: f64, errors: &[f64]) -> 
 
 /// Difference of the errors of the first task that differ by more than [`UNREACHED`], greater than 0 where it is farther; 0 where none does.
 pub(super) fn first_difference(levels: impl Iterator<Item = f64>, errors: &[f64]) -> f64 {
-    let mut differences = levels.zip(errors).map(|(level, error)| level - error);
-    differences.find(|difference| difference.abs() > UNREACHED).unwrap_or(0.0)
+    posture_solver::first_difference(levels, errors.iter().copied(), UNREACHED)
 }
 
 /// The postures that a search finds while some rates are `locked`, that of least effort first.
