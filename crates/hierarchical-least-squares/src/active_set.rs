@@ -154,14 +154,17 @@ impl ActiveSet {
         }
     }
 
-    /// Puts an unknown at its bound and appends the bound to the factor.
+    /// Puts an unknown at its bound and appends the bound to the factor. Where rounding moved an unknown that the working set holds, the bound is
+    /// linearly dependent on the rows of the factor: its column is left out, lest it move with a column once one of these rows is dropped.
     fn activate_bound(&mut self, problem: &Problem, i: usize, side: Side) {
         self.working_set.bounds[i] = side;
         self.x[i] = if side == Side::Lower { problem.lower[i] } else { problem.upper[i] };
         self.work.fill(0.0);
         if let Some(column) = self.factor.columns().iter().position(|&unknown| unknown == i) {
             self.work[column] = 1.0;
-            self.append(Constraint::Bound(i), 1.0);
+            if !self.append(Constraint::Bound(i), 1.0) {
+                self.refactorise(problem);
+            }
         }
     }
 

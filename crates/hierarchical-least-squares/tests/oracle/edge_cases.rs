@@ -178,3 +178,27 @@ fn limits_met_at_once_are_taken_in_their_order_whatever_their_last_digits() {
         assert!(bounds[0] < -2.0 && bounds[1] == 0.0, "lower bounds {lower:?}: multipliers {bounds:?}");
     }
 }
+
+/// Rounding moves an unknown along a row that all but holds it, down to its bound. The bound then holds it, too, when a level below drops the row.
+#[test]
+fn a_bound_that_depends_on_a_row_holds_once_that_row_is_dropped() {
+    let rounding = 1e-12;
+    let beside = |goal: f64, below: &[(&[f64], f64, f64)]| {
+        let at_most: &[f64] = &[1.0, 0.0, rounding];
+        let levels = vec![
+            level(&[(at_most, f64::NEG_INFINITY, 0.0)]),
+            level(&[(&[0.0, 0.0, 1.0], goal, goal)]),
+            level(below),
+        ];
+        Problem { lower: vec![0.0, -9.0, -9.0], ..problem(3, levels) }
+    };
+    let (mut solver, unknown) = (Solver::new(), [1.0, 0.0, 0.0]);
+    let first = beside(0.0, &[(&unknown, 1.0, 1.0)]);
+    assert_eq!(solver.solve(&first), Ok(Status::Solved));
+    // The row is active now; the next goal moves the first unknown by 1e-12 below its bound.
+    let next = beside(1.0, &[(&unknown, -1.0, -1.0), (&[1.0, 1.0, 0.0], 0.0, 0.0)]);
+    assert_eq!(solver.solve_next(&next), Ok(Status::Solved));
+    for (x, expected) in solver.solution().iter().zip([0.0, 0.0, 1.0]) {
+        assert!((x - expected).abs() < 1e-9, "{:?}", solver.solution());
+    }
+}
