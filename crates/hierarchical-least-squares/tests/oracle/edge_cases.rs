@@ -185,11 +185,8 @@ fn a_bound_that_depends_on_a_row_holds_once_that_row_is_dropped() {
     let rounding = 1e-12;
     let beside = |goal: f64, below: &[(&[f64], f64, f64)]| {
         let at_most: &[f64] = &[1.0, 0.0, rounding];
-        let levels = vec![
-            level(&[(at_most, f64::NEG_INFINITY, 0.0)]),
-            level(&[(&[0.0, 0.0, 1.0], goal, goal)]),
-            level(below),
-        ];
+        let levels =
+            vec![level(&[(at_most, f64::NEG_INFINITY, 0.0)]), level(&[(&[0.0, 0.0, 1.0], goal, goal)]), level(below)];
         Problem { lower: vec![0.0, -9.0, -9.0], ..problem(3, levels) }
     };
     let (mut solver, unknown) = (Solver::new(), [1.0, 0.0, 0.0]);
