@@ -154,8 +154,9 @@ impl ActiveSet {
         }
     }
 
-    /// Puts an unknown at its bound and appends the bound to the factor. Where rounding moved an unknown that the working set holds, the bound is
-    /// linearly dependent on the rows of the factor: its column is left out, lest it move with a column once one of these rows is dropped.
+    /// Puts an unknown at its bound and appends the bound to the factor. A bound that is linearly dependent on the rows of the factor (rounding
+    /// moved an unknown that these rows hold) cannot be appended: the column of the unknown is left out, so that the bound also holds once one of
+    /// these rows is dropped.
     fn activate_bound(&mut self, problem: &Problem, i: usize, side: Side) {
         self.working_set.bounds[i] = side;
         self.x[i] = if side == Side::Lower { problem.lower[i] } else { problem.upper[i] };
