@@ -33,6 +33,9 @@ pub struct Limits {
     pub include_depth: usize,
 }
 
+/// Bytes of a name that readers take and writers give, at most.
+pub(crate) const NAME_BYTES: usize = 256;
+
 impl Default for Limits {
     fn default() -> Self {
         Self {
@@ -40,7 +43,7 @@ impl Default for Limits {
             depth: 64,
             elements: 200_000,
             attributes: 64,
-            name_bytes: 256,
+            name_bytes: NAME_BYTES,
             numbers: 4096,
             coordinates: 512,
             includes: 16,

@@ -406,6 +406,22 @@ fn odd_names_and_what_programs_refuse() {
     assert_eq!(error, "segment `long`: more than six motions before the next mass; MuJoCo's bodies have six at most");
 }
 
+/// A URDF or MJCF reader takes names of any length, and writes control characters as escapes, which makes them longer.
+#[test]
+fn names_longer_than_readers_take_are_shortened_and_it_is_said() {
+    let long = "\\u007f".repeat(50);
+    let hinge = JointKind::Hinge(axis(1.0, 0.0, 0.0));
+    let model = build(vec![segment(&long, None, hinge, named(&[&long]))]);
+    for format in [Osim, Urdf, Mjcf] {
+        let written = write(&model, format).unwrap();
+        let back = read(&written.text, format);
+        let name = &back.coordinates()[0].name;
+        assert!((200..=256).contains(&name.len()) && back.segments()[0].name.len() <= 256, "{name}");
+        let said = format!("The coordinate {long:?} is named `{name}` in the file.");
+        assert!(written.lost.contains(&said), "{said}\n{:?}", written.lost);
+    }
+}
+
 /// MuJoCo's body of both joints has its own frame, which the ball turns.
 #[test]
 fn a_ball_whose_segment_has_no_mass_and_a_hinge_behind_it() {

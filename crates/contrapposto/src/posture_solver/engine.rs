@@ -41,6 +41,8 @@ pub struct Engine<'a> {
     rule: StepRule,
     /// The posture in which the last step began.
     last: Posture,
+    /// Half of the change of that step, by rate; used where it is halved.
+    half: Vec<f64>,
     slope: SlopeAlongMotion,
     pub(super) basin_hopping: BasinHopping,
 }
@@ -91,6 +93,7 @@ impl<'a> Engine<'a> {
             linearisation,
             rule,
             last: settings.model.default_posture(),
+            half: vec![],
             slope: SlopeAlongMotion::new(&settings, &contact),
             basin_hopping: BasinHopping::new(&settings.model),
             iterate: Iterate::new(&settings.model, contact),
@@ -182,6 +185,23 @@ impl<'a> Engine<'a> {
         self.settings.placements.as_ref().map_or_else(Slip::default, |placements| self.error_of(placements).slip())
     }
 
+    /// Whether the last step, which has led to the posture evaluated last, has left more than `tolerance` of second order in one of the
+    /// first `levels`: its error is larger than before, and than the step foresaw, by more, in the unit of the level.
+    pub(crate) fn left_second_order(&self, levels: usize, tolerance: f64) -> bool {
+        let first = self.settings.first_level();
+        (0..levels).any(|k| self.error(k) > self.errors()[k].max(self.solver.residual_norm(first + k)) + tolerance)
+    }
+
+    /// Leaves half of the last step: moves `posture` to the middle between where that step began and where it led.
+    pub(crate) fn halve_step(&mut self, posture: &mut Posture) {
+        let change = &self.solver.solution()[..self.settings.model.rates().len()];
+        self.half.clear();
+        self.half.extend(change.iter().map(|s| 0.5 * s));
+        posture.values_mut().copy_from_slice(self.last.values());
+        posture.displace(&self.settings.model, &self.half);
+        self.settings.keep_ranges(posture);
+    }
+
     fn error_of(&self, level: &PriorityLevel) -> LevelError {
         LevelError::of(level, &self.settings.model, &self.iterate.torques)
     }
@@ -263,7 +283,8 @@ impl<'a> Engine<'a> {
     }
 
     /// Steps until they are short or change the merit little. With effort, [`Options::local_minima`] are compared
-    /// first; where that leaves steps to be made, a descent to the nearest one is tried again and again between them. Without supports the largest step shrinks after a fifth of the largest number of steps, so that the body
+    /// first; where that leaves steps to be made, a descent to the nearest one is tried again and again between them, and a last one where they have
+    /// ended without reaching all levels above effort. Without supports the largest step shrinks after a fifth of the largest number of steps, so that the body
     /// comes to rest whatever it is asked; and where a level other than a rest posture is not reached, two other starts
     /// are tried, and the posture whose first differing level is nearer is kept.
     ///
@@ -309,6 +330,7 @@ impl<'a> Engine<'a> {
         let mut posture = start.clone();
         let minima = self.settings.options.local_minima;
         let (mut converged, mut steps) = self.compare_local_minima(&mut posture, minima)?;
+        let mut descended = converged;
         let most = steps + self.settings.options.max_steps;
         let mut descent_at = steps + STEPS_BEFORE_DESCENT;
         while steps < most && !converged {
@@ -317,12 +339,16 @@ impl<'a> Engine<'a> {
             steps += 1;
             converged = step.largest <= self.settings.options.step_tolerance || self.rule.is_idle();
             if steps >= descent_at && !converged {
-                let (at_rest, descended) = self.compare_local_minima(&mut posture, minima.min(1))?;
-                (converged, steps) = (at_rest, steps + descended);
+                let (at_rest, made) = self.compare_local_minima(&mut posture, minima.min(1))?;
+                (converged, steps) = (at_rest, steps + made);
+                descended = at_rest;
                 descent_at = steps + STEPS_BEFORE_DESCENT;
             }
         }
         self.linearise_or_go_back(&mut posture)?;
+        if !descended {
+            steps += self.descend_as_near(&mut posture)?;
+        }
         self.describe(posture, converged, steps)
     }
 

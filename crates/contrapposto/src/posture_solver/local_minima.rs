@@ -64,9 +64,28 @@ impl Engine<'_> {
         }
         self.evaluate(posture)?;
         let stays = (before - distance(self)).abs() <= LEAST_NEARING;
-        let problem = self.settings.effort_problem(&self.iterate.contact, Rates::Free).filter(|_| stays);
-        let shortfall = problem.map(|problem| self.basin_hopping.shortfall(&problem, posture)).transpose()?;
-        Ok((shortfall, STEPS_OF_NEARING))
+        Ok((if stays { self.shortfall(posture)? } else { None }, STEPS_OF_NEARING))
+    }
+
+    /// The errors of `posture`, for descents that keep them; `None` without effort, or where no level above it is missed.
+    fn shortfall(&mut self, posture: &Posture) -> Result<Option<Vec<f64>>, EngineError> {
+        self.evaluate(posture)?;
+        let above = self.settings.effort_level.unwrap_or(0);
+        if (0..above).map(|level| self.error(level)).sum::<f64>() <= MISSED_LEVELS {
+            return Ok(None);
+        }
+        let problem = self.settings.effort_problem(&self.iterate.contact, Rates::Free);
+        Ok(problem.map(|problem| self.basin_hopping.shortfall(&problem, posture)).transpose()?)
+    }
+
+    /// Moves `posture`, in which steps have ended that did not reach all levels above effort, to its local minimum of effort with the errors that
+    /// it has; returns the number of steps.
+    pub(super) fn descend_as_near(&mut self, posture: &mut Posture) -> Result<usize, EngineError> {
+        if self.settings.options.local_minima == 0 || !self.settings.can_descend() {
+            return Ok(0);
+        }
+        let Some(shortfall) = self.shortfall(posture)? else { return Ok(0) };
+        Ok(self.lowest_minimum(posture, 1, &shortfall)?.map_or(0, |minimum| minimum.steps))
     }
 
     /// Moves `posture` to the nearest local minimum of effort under the supports and the levels above effort, and
@@ -87,8 +106,8 @@ impl Engine<'_> {
     }
 
     /// The posture near the local minimum of effort that is nearest to `start`, by a descent that ends where little is to be gained; `start`
-    /// itself where the descent leaves supports or levels, or [`Options::local_minima`] is 0. Levels that `start` misses, and that some steps come no
-    /// nearer to, stay missed as they are.
+    /// itself where the descent leaves supports or levels, or [`Options::local_minima`] is 0. Levels that `start` misses stay missed as they are where
+    /// some steps come no nearer to them, and where no descent meets them.
     ///
     /// # Errors
     /// As [`Engine::step`].
@@ -97,14 +116,24 @@ impl Engine<'_> {
         let (mut posture, mut steps) = (start.clone(), 0);
         if self.settings.options.local_minima > 0 && self.settings.can_descend() {
             let (shortfall, made) = self.shortfall_out_of_reach(&mut posture)?;
-            let problem = self.settings.effort_problem(&self.iterate.contact, Rates::Free);
-            if let Some(problem) = problem {
-                let problem = EffortProblem { shortfall: shortfall.as_deref().unwrap_or_default(), ..problem };
-                steps = made + self.basin_hopping.near_minimum(&problem, &mut posture)?;
+            let mut descended = self.descend_near(&mut posture, shortfall.as_deref().unwrap_or_default())?;
+            if descended == 0
+                && shortfall.is_none()
+                && let Some(shortfall) = self.shortfall(&posture)?
+            {
+                descended = self.descend_near(&mut posture, &shortfall)?;
             }
+            steps = made + descended;
             self.settings.keep_ranges(&mut posture);
         }
         self.evaluate(&posture)?;
         self.describe(posture, false, steps)
+    }
+
+    /// Moves `posture` near its local minimum; returns the number of steps, 0 where the descent leaves supports or levels.
+    fn descend_near(&mut self, posture: &mut Posture, shortfall: &[f64]) -> Result<usize, JointTorquesError> {
+        let problem = self.settings.effort_problem(&self.iterate.contact, Rates::Free);
+        let problem = problem.map(|problem| EffortProblem { shortfall, ..problem });
+        problem.map_or(Ok(0), |problem| self.basin_hopping.near_minimum(&problem, posture))
     }
 }
