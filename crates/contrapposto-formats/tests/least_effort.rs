@@ -1,6 +1,5 @@
 //! A job that names no effort has it all the same.
 
-use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::simulation::{Run, Scenario};
 use contrapposto::tasks::Task;
 use contrapposto::verdict::{Verdict, VerdictKind};
@@ -89,31 +88,22 @@ fn a_run_begins_where_its_whole_body_rests() {
     assert!(end > 0.98 * start && start < 0.2, "{start} at the start, {end} after 5 s");
 }
 
-/// A seated woman whose hand cannot come nearer to its target than 14 cm. Steps alone leave the toes at twice their strength, 0.6 N m.
+/// A woman on one foot and a fifth of the other, who misses a task (random world 894). Her toes, which have no part in it, once
+/// worked at a third of their strength: steps of the solver had come to rest before effort was least.
 #[test]
-fn beside_a_target_out_of_reach_toes_that_have_no_part_in_it_hardly_work() {
-    let text = "format = 1\ntitle = \"reaches up\"\n[model]\nadult = { sex = \"female\", stature_m = 1.575, mass_kg = 65.9 }\n\
-        [posture]\nhip_flexion_r_deg = 90\nknee_angle_r_deg = 90\narm_flex_r_deg = -7.8\nelbow_flex_r_deg = 72.8\n\
-        hip_flexion_l_deg = 90\nknee_angle_l_deg = 90\narm_flex_l_deg = -4.3\nelbow_flex_l_deg = 112.4\n\
-        [[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n[[support]]\nsegment = \"pelvis\"\n\
-        [[task]]\nkind = \"orientation\"\nsegment = \"humerus_l\"\ntarget = \"start\"\n[[task]]\nkind = \"center_of_mass\"\n\
-        [[task]]\nkind = \"point\"\nsegment = \"hand_r\"\ntarget_m = [0.398, 1.574, 0.381]\n[[task]]\nkind = \"effort\"\n";
+fn at_a_start_that_misses_a_task_toes_that_have_no_part_in_it_do_not_work() {
+    let text = "format = 1\ntitle = \"reaches\"\n[model]\nadult = { sex = \"female\", stature_m = 1.720, mass_kg = 95.2 }\n\
+        [posture]\nhip_flexion_r_deg = 2.51\nknee_angle_r_deg = 5.03\nankle_angle_r_deg = 2.51\narm_flex_r_deg = 67.9\n\
+        elbow_flex_r_deg = 68.0\nhip_flexion_l_deg = 2.51\nknee_angle_l_deg = 5.03\nankle_angle_l_deg = 2.51\narm_flex_l_deg = 5.3\n\
+        elbow_flex_l_deg = 99.2\n[[support]]\nsegment = \"calcn_r\"\nfriction = 0.55\n[[support]]\nsegment = \"calcn_l\"\n\
+        share_max = 0.2\n[[task]]\nkind = \"orientation\"\nsegment = \"head\"\ntarget = \"start\"\n[[task]]\nkind = \"point\"\n\
+        segment = \"hand_r\"\ntarget_m = [0.592, 0.812, 0.024]\nabove_relief = true\n[[task]]\nkind = \"orientation\"\n\
+        segment = \"torso\"\ntarget = \"start\"\n[[task]]\nkind = \"effort\"\n";
     let job = read_run("job.toml", format!("{text}{RUN}").as_bytes(), None).unwrap().scenario;
-    let goals: Vec<_> = job.tasks.iter().map(|task| task.goal.clone()).collect();
-    let solve = |local_minima| {
-        let options = Options { local_minima, max_step: 0.1, ..Options::least_effort() };
-        let (supports, goals) = (job.supports.clone(), goals.clone());
-        let mut engine = Engine::with_supports(&job.model, &job.start, supports, goals, &job.loads, options).unwrap();
-        job.limits.iter().for_each(|task| engine.limit(task.clone()).unwrap());
-        let solved = engine.solve(&job.start).unwrap();
-        let toes = ["mtp_angle_r", "mtp_angle_l"].map(|toes| {
-            let coordinate = &job.model.coordinates()[job.model.coordinate(toes).unwrap()];
-            engine.torques().active_torque()[coordinate.rate.unwrap()].abs()
-        });
-        println!("{local_minima} local minima: effort {}, toes {toes:?} N m, {:?}", solved.effort, solved.reason);
-        (solved, toes)
-    };
-    let [(_, by_steps), (solved, toes)] = [solve(0), solve(1)];
-    assert!(solved.levels[2].length > 0.1, "{:?}", solved.levels);
-    assert!(by_steps.iter().all(|torque| *torque > 0.5) && toes.iter().all(|torque| *torque < 0.05));
+    let mut run = Run::new(&job).unwrap();
+    let sample = run.next_sample().unwrap().unwrap();
+    let toes = ["mtp_angle_r", "mtp_angle_l"].map(|toes| sample.load[job.model.coordinate(toes).unwrap()]);
+    let errors = &sample.standing.unwrap().errors;
+    println!("toes at {toes:?} of their strength, errors {errors:?}");
+    assert!(errors.iter().any(|error| *error > 0.01) && toes.iter().all(|share| *share < 1e-3));
 }
