@@ -7,6 +7,7 @@
 //!   reject the last step if it raised the merit, and go back
 //!   complete the problem: bounds, damping, Newton level       step_rule.rs
 //!   solve it, and move the posture            hierarchical_least_squares
+//!   in a run: take half of a step that leaves much of second order     halved_step.rs
 //! until steps are short or idle
 //! ```
 
@@ -37,12 +38,12 @@ pub struct Engine<'a> {
     pub(super) settings: Settings<'a>,
     pub(super) iterate: Iterate,
     linearisation: Linearisation,
-    solver: Solver,
+    pub(super) solver: Solver,
     rule: StepRule,
     /// The posture in which the last step began.
-    last: Posture,
-    /// Half of the change of that step, by rate; used where it is halved.
-    half: Vec<f64>,
+    pub(super) last: Posture,
+    /// Half of the change of that step, by rate, where it was halved.
+    pub(super) half: Vec<f64>,
     slope: SlopeAlongMotion,
     pub(super) basin_hopping: BasinHopping,
 }
@@ -93,7 +94,7 @@ impl<'a> Engine<'a> {
             linearisation,
             rule,
             last: settings.model.default_posture(),
-            half: vec![],
+            half: vec![0.0; settings.model.rates().len()],
             slope: SlopeAlongMotion::new(&settings, &contact),
             basin_hopping: BasinHopping::new(&settings.model),
             iterate: Iterate::new(&settings.model, contact),
@@ -183,23 +184,6 @@ impl<'a> Engine<'a> {
     /// Distance of the supports from their places.
     pub(crate) fn slip(&self) -> Slip {
         self.settings.placements.as_ref().map_or_else(Slip::default, |placements| self.error_of(placements).slip())
-    }
-
-    /// Whether the last step, which has led to the posture evaluated last, has left more than `tolerance` of second order in one of the
-    /// first `levels`: its error is larger than before, and than the step foresaw, by more, in the unit of the level.
-    pub(crate) fn left_second_order(&self, levels: usize, tolerance: f64) -> bool {
-        let first = self.settings.first_level();
-        (0..levels).any(|k| self.error(k) > self.errors()[k].max(self.solver.residual_norm(first + k)) + tolerance)
-    }
-
-    /// Leaves half of the last step: moves `posture` to the middle between where that step began and where it led.
-    pub(crate) fn halve_step(&mut self, posture: &mut Posture) {
-        let change = &self.solver.solution()[..self.settings.model.rates().len()];
-        self.half.clear();
-        self.half.extend(change.iter().map(|s| 0.5 * s));
-        posture.values_mut().copy_from_slice(self.last.values());
-        posture.displace(&self.settings.model, &self.half);
-        self.settings.keep_ranges(posture);
     }
 
     fn error_of(&self, level: &PriorityLevel) -> LevelError {

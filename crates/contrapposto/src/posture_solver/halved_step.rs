@@ -1,0 +1,39 @@
+//! Takes half of a step that would lead away from tasks by what it leaves of second order.
+
+use super::engine::Engine;
+use super::error::EngineError;
+use crate::posture::Posture;
+
+impl Engine<'_> {
+    /// One step as [`Engine::step`], or half of it where all of it leaves more than `tolerance` of second order in one of the first `levels`: an error,
+    /// in the unit of the level, that is larger by more than the one before, and than the one that the linear problem foresaw. Half of a step
+    /// leaves a quarter as much. Returns the largest change of a rate, rad or m.
+    ///
+    /// # Errors
+    /// As [`Engine::step`].
+    pub(crate) fn step_or_half(
+        &mut self,
+        posture: &mut Posture,
+        levels: usize,
+        tolerance: f64,
+    ) -> Result<f64, EngineError> {
+        let largest = self.step(posture)?.largest;
+        // A posture in which a law gives no numbers is refused when its torques are computed.
+        if self.evaluate(posture).is_err() || !self.left_second_order(levels, tolerance) {
+            return Ok(largest);
+        }
+        for (half, whole) in self.half.iter_mut().zip(self.solver.solution()) {
+            *half = 0.5 * whole;
+        }
+        posture.values_mut().copy_from_slice(self.last.values());
+        posture.displace(&self.settings.model, &self.half);
+        self.settings.keep_ranges(posture);
+        Ok(0.5 * largest)
+    }
+
+    /// Whether the last step, to the posture that was evaluated last, has left so much.
+    fn left_second_order(&self, levels: usize, tolerance: f64) -> bool {
+        let first = self.settings.first_level();
+        (0..levels).any(|k| self.error(k) > self.errors()[k].max(self.solver.residual_norm(first + k)) + tolerance)
+    }
+}
