@@ -5,6 +5,10 @@
 //! support carries more than its share; muscles work least, `sum (tau_a / S)^2`; the forces are small. Of supports whose
 //! friction has no limit the first row is left out. Strength `S` is that of the group that works, which depends on the answer:
 //! the solution is repeated with the active sides of the last one until they are consistent.
+//!
+//! At the edge of what the supports can give, where the weight acts above the front edges of both feet, the last digits of equilibrium
+//! would decide what each foot carries: there equilibrium may be missed by as much as counts as held, and a share
+//! that cannot be kept by a millionth more than it must.
 
 use nalgebra::Vector3;
 
@@ -14,7 +18,7 @@ use super::support::{SupportError, root_rates};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Side};
 use crate::statics::{FixedIn, Load, LoadKind};
-use hierarchical_least_squares::{Level, Problem, Solver, Status};
+use hierarchical_least_squares::{Level, Problem, ProblemError, Solver, Status};
 
 /// Whether the root is in equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +36,12 @@ pub enum Balance {
 
 /// Greatest residual of the root's equations in equilibrium, in body weights (times 1 m).
 pub(super) const HELD: f64 = 1e-9;
+/// Level of the root's equilibrium.
+const ROOT: usize = 1;
+/// Level of the shares.
+const SHARE: usize = 2;
+/// Addition to the least that a support must carry beyond its share, in body weights: room for muscles to work less (assumed).
+const SHARE_SLACK: f64 = 1e-6;
 /// Greatest number of times that signs of active torque are put right.
 const SIGNS: usize = 12;
 
@@ -141,9 +151,7 @@ impl ContactForces {
         self.hard_levels(required);
         for _ in 0..SIGNS {
             self.effort_level(model, angles, required);
-            // What is missing does not depend, in its last digits, on the postures before.
-            if self.solver.solve_near(&self.problem) != Ok(Status::Solved) && self.solver.solve(&self.problem).is_err()
-            {
+            if self.solve().is_err() {
                 return self.give_up();
             }
             self.forces.copy_from_slice(self.solver.solution());
@@ -155,6 +163,34 @@ impl ContactForces {
         self.balance = self.judge();
         self.write_loads();
         self.balance
+    }
+
+    /// Solves for the forces; at the edge of what the supports can give with a slack, which the levels keep until they are filled anew.
+    fn solve(&mut self) -> Result<(), ProblemError> {
+        let mut status = self.solver.solve_near(&self.problem)?;
+        if status != Status::Solved {
+            // What is missing does not depend, in its last digits, on the postures before.
+            status = self.solver.solve(&self.problem)?;
+        }
+        if !self.is_near(ROOT) || status == Status::Solved && self.is_near(SHARE) {
+            return Ok(());
+        }
+        let level = &mut self.problem.levels[ROOT];
+        level.lower.iter_mut().for_each(|lower| *lower -= HELD);
+        level.upper.iter_mut().for_each(|upper| *upper += HELD);
+        self.solver.solve_near(&self.problem)?;
+        if !self.is_near(SHARE) {
+            let beyond = self.solver.residual(SHARE);
+            let level = &mut self.problem.levels[SHARE];
+            level.upper.iter_mut().zip(beyond).for_each(|(upper, beyond)| *upper += beyond + SHARE_SLACK);
+            self.solver.solve_near(&self.problem)?;
+        }
+        Ok(())
+    }
+
+    /// Whether a level is met as nearly as equilibrium counts as held.
+    fn is_near(&self, level: usize) -> bool {
+        self.solver.residual(level).iter().all(|left| left.abs() <= HELD)
     }
 
     /// Given torques that are no numbers, or too large: nothing holds.
@@ -200,13 +236,13 @@ impl ContactForces {
             let corners = corner..corner + support.corners.len();
             corner = corners.end;
             friction_rows(&mut self.problem.levels[0], &mut self.row, support, corners.clone(), unknowns);
-            share_row(&mut self.problem.levels[2], &mut self.row, support, corners, unknowns);
+            share_row(&mut self.problem.levels[SHARE], &mut self.row, support, corners, unknowns);
         }
         for i in 0..self.root.len() {
             let rate = self.root[i];
             self.fill_row(rate, self.weight);
             let rest = required[rate] / self.weight;
-            self.problem.levels[1].push(&self.row, rest, rest);
+            self.problem.levels[ROOT].push(&self.row, rest, rest);
         }
         for i in 0..self.row.len() {
             self.row.fill(0.0);
@@ -214,7 +250,7 @@ impl ContactForces {
             self.problem.levels[4].push(&self.row, 0.0, 0.0);
         }
         self.problem.levels[0].hard = true;
-        self.problem.levels[1].hard = true;
+        self.problem.levels[ROOT].hard = true;
     }
 
     fn effort_level(&mut self, model: &Model, angles: &[f64], required: &[f64]) {
@@ -254,10 +290,10 @@ impl ContactForces {
     }
 
     fn judge(&self) -> Balance {
-        let residual = self.solver.residual(1);
-        if residual.iter().all(|left| left.abs() <= HELD) {
+        if self.is_near(ROOT) {
             return Balance::Held;
         }
+        let residual = self.solver.residual(ROOT);
         let mut missing = [0.0; 2];
         for (left, &rate) in residual.iter().zip(&self.root) {
             missing[usize::from(self.turning[rate])] += (left * self.weight).powi(2);
@@ -338,6 +374,12 @@ impl ContactForces {
     /// Normal force at a support as a share of body weight.
     pub fn share(&self, support: usize) -> f64 {
         self.corners(support).map(|corner| self.forces[FORCES_PER_CORNER * corner]).sum()
+    }
+
+    /// Normal forces beyond the greatest shares of the supports, as a share of body weight.
+    pub(crate) fn beyond_shares(&self) -> f64 {
+        let supports = self.supports.iter().enumerate();
+        supports.map(|(i, support)| (self.share(i) - support.share_max).max(0.0)).sum()
     }
 
     /// Point at which the normal force of a support acts, ground, m; `None` where the support carries nothing.

@@ -215,10 +215,9 @@ impl<'a> Solvers<'a> {
             return Solved { steps, outcome: Outcome::Fell(missing) };
         }
         relaxed.levels.remove(slot);
-        let supports = search.supports.iter().enumerate();
         let shares = (0..search.supports.len()).map(|i| contact.share(i)).collect();
         let candidate = Candidate {
-            excess: supports.map(|(i, support)| (contact.share(i) - support.share_max).max(0.0)).sum(),
+            excess: contact.beyond_shares(),
             raised_limbs: limbs.raised(search, kinematics),
             relative_torques: relative_torques(model, engine),
             places: places(model, kinematics),

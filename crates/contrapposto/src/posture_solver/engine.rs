@@ -37,7 +37,7 @@ use hierarchical_least_squares::Solver;
 pub struct Engine<'a> {
     pub(super) settings: Settings<'a>,
     pub(super) iterate: Iterate,
-    linearisation: Linearisation,
+    pub(super) linearisation: Linearisation,
     pub(super) solver: Solver,
     rule: StepRule,
     /// The posture in which the last step began.

@@ -2,11 +2,12 @@
 
 use super::engine::Engine;
 use super::error::EngineError;
+use super::linearisation::{SHARES, missing};
 use crate::posture::Posture;
 
 impl Engine<'_> {
-    /// One step as [`Engine::step`], or half of it where all of it leaves more than `tolerance` of second order in one of the first `levels`: an error,
-    /// in the unit of the level, that is larger by more than the one before, and than the one that the linear problem foresaw. Half of a step
+    /// One step as [`Engine::step`], or half of it where all of it leaves more than `tolerance` of second order in one of the first `levels`, or in what
+    /// supports carry beyond their shares: an error, in the unit of the level, that is larger by more than the one before, and than the one that the linear problem foresaw. Half of a step
     /// leaves a quarter as much. Returns the largest change of a rate, rad or m.
     ///
     /// # Errors
@@ -34,6 +35,11 @@ impl Engine<'_> {
     /// Whether the last step, to the posture that was evaluated last, has left so much.
     fn left_second_order(&self, levels: usize, tolerance: f64) -> bool {
         let first = self.settings.first_level();
-        (0..levels).any(|k| self.error(k) > self.errors()[k].max(self.solver.residual_norm(first + k)) + tolerance)
+        let errors = (0..levels).map(|k| (self.error(k), self.errors()[k], self.solver.residual_norm(first + k)));
+        let shares = self.settings.on_supports().then(|| {
+            let before = missing(&self.linearisation.problem.levels[SHARES]).map(f64::abs).sum();
+            (self.iterate.contact.beyond_shares(), before, self.solver.residual_norm(SHARES))
+        });
+        errors.chain(shares).any(|(now, before, foreseen)| now > before.max(foreseen) + tolerance)
     }
 }

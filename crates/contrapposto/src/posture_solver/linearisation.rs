@@ -11,6 +11,9 @@ use crate::effort::problem::fill_force_columns;
 use crate::tasks::{PriorityLevel, Task};
 use hierarchical_least_squares::{Level, Problem, Solver};
 
+/// Level of the supports' shares.
+pub(super) const SHARES: usize = 3;
+
 /// The linearised problem at the iterate, with space that is kept.
 #[derive(Clone, Debug)]
 pub(super) struct Linearisation {
@@ -94,7 +97,7 @@ impl Linearisation {
         for (i, support) in contact.supports().iter().enumerate() {
             let corners = contact.corners(i);
             friction_rows(&mut self.problem.levels[0], &mut self.row, support, corners.clone(), unknowns);
-            share_row(&mut self.problem.levels[3], &mut self.row, support, corners, unknowns);
+            share_row(&mut self.problem.levels[SHARES], &mut self.row, support, corners, unknowns);
         }
         let weight = contact.weight();
         for &rate in contact.root() {
