@@ -352,6 +352,26 @@ fn block_on(motions: Vec<Motion>, in_parent: Placement, center: V, corners: Vec<
     Stand::new(builder.build(), vec![support], vec![])
 }
 
+/// Two patches whose front edges differ by less than counts as balance: the weight acts at the edge, where the last digits of equilibrium
+/// would have the patch farther in front carry 35 % though 20 % are allowed.
+#[test]
+fn at_the_edge_of_the_supports_shares_are_kept() {
+    let patch = |front: f64, sides: [f64; 2]| {
+        sides.iter().flat_map(|&z| [V::new(-0.1, 0.0, z), V::new(front, 0.0, z)]).collect::<Vec<_>>()
+    };
+    for beyond in [-1e-6, -2e-10, 0.0, 2e-10, 6e-10] {
+        let center = V::new(0.1 + beyond, 1.0, 0.08);
+        let mut stand = free_block(Placement::identity(), center, patch(0.1, [0.05, 0.15]), V::y());
+        let [first] = stand.contact.supports() else { unreachable!() };
+        let other = Support { corners: patch(0.1 + 3e-10, [-0.15, -0.05]), share_max: 0.2, ..first.clone() };
+        stand = Stand::new(stand.model, vec![first.clone(), other], vec![]);
+        assert_eq!(stand.update(&stand.model.default_posture()), Balance::Held, "{beyond}");
+        let share = stand.contact.share(1);
+        println!("weight {beyond} m beyond the first edge: the other patch carries {share}");
+        assert!(share <= 0.2 + 2e-6, "{share}");
+    }
+}
+
 /// Weight `reach` beyond the edge `a` of the patch: a force `N` at the edge leaves `(N - 1)` of weight and `(N a - c)` of moment,
 /// least in squares at `N = (1 + a c)/(1 + a^2)`. Both together, times `sqrt(1 + a^2)`, are how far the body leans too far.
 #[test]

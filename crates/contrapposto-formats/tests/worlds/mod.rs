@@ -104,10 +104,11 @@ fn random_worlds_keep_the_promises_of_every_sample_and_repeat_to_the_bit() {
 }
 
 /// Worlds in which an error above relief once rose by 1 mm to 2 cm: the solver moved what a level above held (869; 853 is kept since that was
-/// mended, too), the judge did not count what a foot carries beyond its share (368), or a whole step left as much of second order (962).
+/// mended, too), the judge did not count what a foot carries beyond its share (368), or a whole step left as much of second order (962). In 358, 433 and 460 a
+/// foot carried 0.1 to 27 % of the weight beyond its share for a while.
 #[test]
 fn errors_above_relief_rise_by_less_than_a_millimetre_where_they_once_rose_by_more() {
-    for seed in [368, 853, 869, 962] {
+    for seed in [358, 368, 433, 460, 853, 869, 962] {
         let world = World::random(&mut Random::seed_from_u64(seed));
         let (course, _) = course(&world.scenario().unwrap()).unwrap();
         course.targets.are_kept(&format!("seed {seed}"));

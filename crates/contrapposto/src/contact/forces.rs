@@ -6,9 +6,8 @@
 //! friction has no limit the first row is left out. Strength `S` is that of the group that works, which depends on the answer:
 //! the solution is repeated with the active sides of the last one until they are consistent.
 //!
-//! At the edge of what the supports can give, where the weight acts above the front edges of both feet, the last digits of equilibrium
-//! would decide what each foot carries: there equilibrium may be missed by as much as counts as held, and a share
-//! that cannot be kept by a millionth more than it must.
+//! Where the weight acts at the very edge of the supports, the last digits of equilibrium would decide what each support carries: there
+//! equilibrium may be missed by as much as counts as held, and a share that cannot be kept by a millionth more than it must.
 
 use nalgebra::Vector3;
 
@@ -165,7 +164,7 @@ impl ContactForces {
         self.balance
     }
 
-    /// Solves for the forces; at the edge of what the supports can give with a slack, which the levels keep until they are filled anew.
+    /// Solves for the forces; where the weight acts at the edge of the supports, with a slack, which the levels keep until they are filled anew.
     fn solve(&mut self) -> Result<(), ProblemError> {
         let mut status = self.solver.solve_near(&self.problem)?;
         if status != Status::Solved {
