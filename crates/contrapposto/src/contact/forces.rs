@@ -5,9 +5,6 @@
 //! support carries more than its share; muscles work least, `sum (tau_a / S)^2`; the forces are small. Of supports whose
 //! friction has no limit the first row is left out. Strength `S` is that of the group that works, which depends on the answer:
 //! the solution is repeated with the active sides of the last one until they are consistent.
-//!
-//! Where the weight acts at the very edge of the supports, the last digits of equilibrium would decide what each support carries: there
-//! equilibrium may be missed by as much as counts as held, and a share that cannot be kept by a millionth more than it must.
 
 use nalgebra::Vector3;
 
@@ -17,7 +14,7 @@ use super::support::{SupportError, root_rates};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Side};
 use crate::statics::{FixedIn, Load, LoadKind};
-use hierarchical_least_squares::{Level, Problem, ProblemError, Solver, Status};
+use hierarchical_least_squares::{Level, Problem, Solver};
 
 /// Whether the root is in equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,11 +33,11 @@ pub enum Balance {
 /// Greatest residual of the root's equations in equilibrium, in body weights (times 1 m).
 pub(super) const HELD: f64 = 1e-9;
 /// Level of the root's equilibrium.
-const ROOT: usize = 1;
+pub(super) const ROOT: usize = 1;
 /// Level of the shares.
-const SHARE: usize = 2;
-/// Addition to the least that a support must carry beyond its share, in body weights: room for muscles to work less (assumed).
-const SHARE_SLACK: f64 = 1e-6;
+pub(super) const SHARE: usize = 2;
+/// Level of effort.
+pub(super) const EFFORT: usize = 3;
 /// Greatest number of times that signs of active torque are put right.
 const SIGNS: usize = 12;
 
@@ -66,8 +63,8 @@ pub struct ContactForces {
     torques: Vec<f64>,
     jacobian: Vec<f64>,
     row: Vec<f64>,
-    problem: Problem,
-    solver: Solver,
+    pub(super) problem: Problem,
+    pub(super) solver: Solver,
     balance: Balance,
     /// Whether each rate is an angle.
     turning: Vec<bool>,
@@ -164,34 +161,6 @@ impl ContactForces {
         self.balance
     }
 
-    /// Solves for the forces; where the weight acts at the edge of the supports, with a slack, which the levels keep until they are filled anew.
-    fn solve(&mut self) -> Result<(), ProblemError> {
-        let mut status = self.solver.solve_near(&self.problem)?;
-        if status != Status::Solved {
-            // What is missing does not depend, in its last digits, on the postures before.
-            status = self.solver.solve(&self.problem)?;
-        }
-        if !self.is_near(ROOT) || status == Status::Solved && self.is_near(SHARE) {
-            return Ok(());
-        }
-        let level = &mut self.problem.levels[ROOT];
-        level.lower.iter_mut().for_each(|lower| *lower -= HELD);
-        level.upper.iter_mut().for_each(|upper| *upper += HELD);
-        self.solver.solve_near(&self.problem)?;
-        if !self.is_near(SHARE) {
-            let beyond = self.solver.residual(SHARE);
-            let level = &mut self.problem.levels[SHARE];
-            level.upper.iter_mut().zip(beyond).for_each(|(upper, beyond)| *upper += beyond + SHARE_SLACK);
-            self.solver.solve_near(&self.problem)?;
-        }
-        Ok(())
-    }
-
-    /// Whether a level is met as nearly as equilibrium counts as held.
-    fn is_near(&self, level: usize) -> bool {
-        self.solver.residual(level).iter().all(|left| left.abs() <= HELD)
-    }
-
     /// Given torques that are no numbers, or too large: nothing holds.
     fn give_up(&mut self) -> Balance {
         self.forces.fill(0.0);
@@ -253,14 +222,14 @@ impl ContactForces {
     }
 
     fn effort_level(&mut self, model: &Model, angles: &[f64], required: &[f64]) {
-        self.problem.levels[3].clear();
+        self.problem.levels[EFFORT].clear();
         for i in 0..self.working.len() {
             let (coordinate, rate) = self.working[i];
             let Some(groups) = &model.coordinates()[coordinate].groups else { continue };
             let strength = groups[self.sides[i].index()].strength.torque(angles[coordinate]);
             self.fill_row(rate, strength);
             let rest = required[rate] / strength;
-            self.problem.levels[3].push(&self.row, rest, rest);
+            self.problem.levels[EFFORT].push(&self.row, rest, rest);
         }
     }
 

@@ -3,6 +3,7 @@
 //! A [`Support`] is a patch of a segment on a plane: its corners can push, and resist sliding up to the friction limit.
 //! [`ContactForces`] finds the forces at all corners that keep the root in equilibrium and, of these, those of least muscular effort.
 
+mod edge;
 mod forces;
 mod missing;
 mod rows;

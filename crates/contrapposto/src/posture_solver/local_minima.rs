@@ -33,8 +33,12 @@ impl Engine<'_> {
         }
         let Some(minimum) = minimum else { return Ok((false, steps)) };
         self.evaluate(posture)?;
-        let held = self.iterate.contact.balance() == Balance::Held;
-        Ok((minimum.converged && held && self.settings.effort_is_last(), steps + minimum.steps))
+        Ok((minimum.converged && self.is_held() && self.settings.effort_is_last(), steps + minimum.steps))
+    }
+
+    /// Whether the supports hold the body in the posture that was evaluated last.
+    fn is_held(&self) -> bool {
+        self.iterate.contact.balance() == Balance::Held
     }
 
     fn lowest_minimum(
@@ -79,13 +83,19 @@ impl Engine<'_> {
     }
 
     /// Moves `posture`, in which steps have ended that did not reach all levels above effort, to its local minimum of effort with the errors that
-    /// it has; returns the number of steps.
+    /// it has, unless the supports would no longer hold the body there; returns the number of steps.
     pub(super) fn descend_as_near(&mut self, posture: &mut Posture) -> Result<usize, EngineError> {
         if self.settings.options.local_minima == 0 || !self.settings.can_descend() {
             return Ok(0);
         }
         let Some(shortfall) = self.shortfall(posture)? else { return Ok(0) };
-        Ok(self.lowest_minimum(posture, 1, &shortfall)?.map_or(0, |minimum| minimum.steps))
+        let (before, held) = (posture.clone(), self.is_held());
+        let Some(minimum) = self.lowest_minimum(posture, 1, &shortfall)? else { return Ok(0) };
+        self.evaluate(posture)?;
+        if held && !self.is_held() {
+            *posture = before;
+        }
+        Ok(minimum.steps)
     }
 
     /// Moves `posture` to the nearest local minimum of effort under the supports and the levels above effort, and

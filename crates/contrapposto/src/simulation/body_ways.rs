@@ -50,9 +50,13 @@ impl BodyMotion<'_> {
         let work = SEARCH_BUDGET_OF_STEP * if missed { 2 } else { 1 };
         let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: !missed };
         let Searched { found, minima, work, cut } = self.easiest(&posture, &[], budget)?;
-        let (posture, steps) = self.settled(found.unwrap_or(posture))?;
+        let (mut found, steps) = self.settled(found.unwrap_or_else(|| posture.clone()))?;
+        // A search that ends at its budget may end in a posture that supports do not hold to the last digit.
+        if self.recover_balance(&mut found)?.is_some() {
+            found = posture;
+        }
         self.forget();
-        Ok(Searched { found: posture, minima, work: work + steps, cut })
+        Ok(Searched { found, minima, work: work + steps, cut })
     }
 
     /// The local minimum of effort near a posture, all joints free, where that is worth a motion, else the posture itself; and the number of steps.
