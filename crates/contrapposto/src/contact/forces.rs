@@ -5,6 +5,7 @@
 //! support carries more than its share; muscles work least, `sum (tau_a / S)^2`; the forces are small. Of supports whose
 //! friction has no limit the first row is left out. Strength `S` is that of the group that works, which depends on the answer:
 //! the solution is repeated with the active sides of the last one until they are consistent.
+//! At the very edge of the supports the equations have a slack (`edge.rs`).
 
 use nalgebra::Vector3;
 
