@@ -41,6 +41,11 @@ impl Engine<'_> {
         self.iterate.contact.balance() == Balance::Held
     }
 
+    /// Sum of the errors of the levels above effort in the posture that was evaluated last.
+    fn distance_above_effort(&self) -> f64 {
+        (0..self.settings.effort_level.unwrap_or(0)).map(|level| self.error(level)).sum()
+    }
+
     fn lowest_minimum(
         &mut self,
         posture: &mut Posture,
@@ -55,11 +60,8 @@ impl Engine<'_> {
     /// The errors that descents have to keep ([`EffortProblem::shortfall`]) where levels above effort are missed and some steps bring `posture` no
     /// nearer to them, else `None`; and the number of steps made.
     fn shortfall_out_of_reach(&mut self, posture: &mut Posture) -> Result<(Option<Vec<f64>>, usize), EngineError> {
-        let distance = |engine: &Self| {
-            (0..engine.settings.effort_level.unwrap_or(0)).map(|level| engine.error(level)).sum::<f64>()
-        };
         self.evaluate(posture)?;
-        let before = distance(self);
+        let before = self.distance_above_effort();
         if before <= MISSED_LEVELS {
             return Ok((None, 0));
         }
@@ -67,15 +69,14 @@ impl Engine<'_> {
             self.step(posture)?;
         }
         self.evaluate(posture)?;
-        let stays = (before - distance(self)).abs() <= LEAST_NEARING;
+        let stays = (before - self.distance_above_effort()).abs() <= LEAST_NEARING;
         Ok((if stays { self.shortfall(posture)? } else { None }, STEPS_OF_NEARING))
     }
 
     /// The errors of `posture`, for descents that keep them; `None` without effort, or where no level above it is missed.
     fn shortfall(&mut self, posture: &Posture) -> Result<Option<Vec<f64>>, EngineError> {
         self.evaluate(posture)?;
-        let above = self.settings.effort_level.unwrap_or(0);
-        if (0..above).map(|level| self.error(level)).sum::<f64>() <= MISSED_LEVELS {
+        if self.distance_above_effort() <= MISSED_LEVELS {
             return Ok(None);
         }
         let problem = self.settings.effort_problem(&self.iterate.contact, Rates::Free);
