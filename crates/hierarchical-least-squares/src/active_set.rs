@@ -3,6 +3,7 @@
 //! The primal active-set method (Nocedal & Wright 2006, "Numerical Optimization", section 16.5): a step ends at the first
 //! limit it meets, which enters the working set; a constraint whose multiplier has the wrong sign leaves it.
 
+use crate::dropped::Dropped;
 use crate::factor::Factor;
 use crate::linalg::{add_scaled, norm};
 use crate::multipliers::MultiplierTable;
@@ -11,16 +12,7 @@ use crate::rows::Rows;
 use crate::tolerances::{
     CHANGES, CHANGES_PER_ROW, CYCLING, INDEPENDENT, MANY_UNKNOWNS, MULTIPLIER, NO_MOTION, ROUNDING, TIE,
 };
-use crate::working_set::{Constraint, RowState, Side, WorkingSet};
-
-/// The limit that ends a step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Blocking {
-    /// Share of the step up to the limit, from 0 to 1.
-    pub(crate) share: f64,
-    pub(crate) constraint: Constraint,
-    pub(crate) side: Side,
-}
+use crate::working_set::{Blocking, Constraint, RowState, Side, WorkingSet};
 
 /// The iterate, its working set and the factor of the working set.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +33,8 @@ pub(crate) struct ActiveSet {
     order: Vec<usize>,
     /// Workspace of [`ActiveSet::refactorise`].
     constraints: Vec<Constraint>,
+    /// What the level has dropped.
+    pub(crate) dropped: Dropped,
     changes: usize,
     most_changes: usize,
 }
@@ -59,6 +53,7 @@ impl ActiveSet {
             gradient: Vec::with_capacity(n),
             order: Vec::with_capacity(n),
             constraints: Vec::with_capacity(n),
+            dropped: Dropped::with_capacity(),
             ..Self::default()
         }
     }
@@ -140,6 +135,7 @@ impl ActiveSet {
 
     /// Adds the constraint that blocked a step of level `k`.
     pub(crate) fn activate(&mut self, problem: &Problem, k: usize, constraint: Constraint, side: Side) {
+        self.dropped.block(constraint, side);
         match constraint {
             Constraint::Bound(i) => self.activate_bound(problem, i, side),
             Constraint::Row(row) if self.rows.of_level(k).contains(&row) => {
@@ -284,6 +280,9 @@ impl ActiveSet {
     /// Moves the iterate along the step, up to the limit that blocks it. Bounds hold exactly.
     pub(crate) fn advance(&mut self, problem: &Problem, blocking: Option<Blocking>) {
         let share = blocking.map_or(1.0, |blocking| blocking.share);
+        if share * norm(&self.step) > ROUNDING * self.x_norm {
+            self.dropped.iterate_moves(blocking);
+        }
         let bounds = problem.lower.iter().zip(&problem.upper);
         for ((x, step), (lower, upper)) in self.x.iter_mut().zip(&self.step).zip(bounds) {
             let end = *x + share * step;
@@ -334,7 +333,8 @@ impl ActiveSet {
         let zero = MULTIPLIER * size;
         let mut worst: Option<(f64, Constraint)> = None;
         let mut consider = |infeasibility: f64, constraint: Constraint| {
-            if infeasibility > zero && worst.is_none_or(|(most, _)| infeasibility > most) {
+            let is_worse = infeasibility > zero && worst.is_none_or(|(most, _)| infeasibility > most);
+            if is_worse && !self.dropped.is_held(constraint) {
                 worst = Some((infeasibility, constraint));
             }
         };

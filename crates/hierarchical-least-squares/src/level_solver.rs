@@ -6,12 +6,12 @@
 //! factor, which leaves a triangular system, or a small least-squares problem where rows contradict each other or the level
 //! is damped (Escande, Mansard & Wieber 2014; Dimitrov, Sherikov & Wieber 2015).
 
-use crate::active_set::{ActiveSet, Blocking};
+use crate::active_set::ActiveSet;
 use crate::linalg::{LeastSquares, add_scaled, dot, norm};
 use crate::problem::Problem;
 use crate::residual_rows::{ResidualRows, choose_residual_rows, drop_residual_row, target};
 use crate::tolerances::{INDEPENDENT, LAST_DIGITS, LIGHT_ROW, MULTIPLIER, NORM_UPDATE, REACHED, REFINEMENTS};
-use crate::working_set::{Constraint, RowState, Side};
+use crate::working_set::{Blocking, Constraint, RowState, Side};
 
 /// Workspace of a level.
 #[derive(Clone, Debug, Default)]
@@ -65,6 +65,7 @@ impl LevelSolver {
     /// Minimises level `k` and fixes its result for the levels below. Returns `false` after too many changes of the working
     /// set.
     pub(crate) fn solve(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize) -> bool {
+        set.dropped.clear();
         choose_residual_rows(problem, set, k);
         self.y.resize(problem.unknowns(), 0.0);
         self.by_constraints_above.clear();
@@ -86,6 +87,7 @@ impl LevelSolver {
             if !set.count_change() {
                 return false;
             }
+            set.dropped.drop(constraint, set.working_set.side(constraint));
             set.factor.truncate(self.above);
             match constraint {
                 Constraint::Row(row) if set.working_set.states[row] == RowState::Residual => {
@@ -315,7 +317,8 @@ impl LevelSolver {
         for (residual, &row) in self.residuals.iter().zip(&self.residual_rows) {
             let infeasibility = set.rows.norm(row) * set.working_set.sides[row].dual_infeasibility(*residual);
             let zero = if set.is_cycling() { MULTIPLIER * self.gradient_size } else { self.zero(set, row) };
-            if infeasibility > zero && worst.is_none_or(|(most, _)| infeasibility > most) {
+            let is_worse = infeasibility > zero && worst.is_none_or(|(most, _)| infeasibility > most);
+            if is_worse && !set.dropped.is_held(Constraint::Row(row)) {
                 worst = Some((infeasibility, row));
             }
         }

@@ -10,7 +10,8 @@ use crate::problem::{Problem, ProblemError};
 /// End of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// Every level is as small as the levels above allow, and every hard level is satisfied.
+    /// Every level is as small as the levels above allow, and every hard level is satisfied. Where more constraints meet in one point than are
+    /// independent, rounding may leave a level larger.
     Solved,
     /// As [`Status::Solved`], but a level marked hard keeps a residual: the first such level.
     Infeasible {

@@ -59,6 +59,12 @@ pub(crate) const CHANGES_PER_ROW: usize = 10;
 /// Changes after which light rows are judged by the level's scale, not by their own. Unit: divides that limit.
 pub(crate) const CYCLING: usize = 4;
 
+/// Times that a constraint comes back at once after it was dropped, from which on a level drops it no more. Unit: times.
+pub(crate) const RETURNS: usize = 10;
+
+/// Constraints that a level remembers to have dropped without moving, and that have come back. Unit: constraints.
+pub(crate) const REMEMBERED: usize = 64;
+
 /// Size from which the unknowns of the first level come first. Unit: unknowns.
 pub(crate) const MANY_UNKNOWNS: usize = 32;
 

@@ -41,6 +41,15 @@ impl Side {
     }
 }
 
+/// The limit that ends a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blocking {
+    /// Share of the step up to the limit, from 0 to 1.
+    pub(crate) share: f64,
+    pub(crate) constraint: Constraint,
+    pub(crate) side: Side,
+}
+
 /// The part a row plays in the level that is being solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RowState {
@@ -107,6 +116,14 @@ impl WorkingSet {
         self.states.clear();
         self.states.resize(rows, RowState::Inactive);
         self.dependents.clear();
+    }
+
+    /// The side at which a constraint is active.
+    pub(crate) fn side(&self, constraint: Constraint) -> Side {
+        match constraint {
+            Constraint::Bound(i) => self.bounds[i],
+            Constraint::Row(row) => self.sides[row],
+        }
     }
 
     /// Sets state and side of a row.

@@ -14,6 +14,8 @@ use crate::tasks::{Effort, PriorityLevel, Task};
 
 /// Steps of an exploratory solve.
 const EXPLORATORY_STEPS: usize = 20;
+/// Largest change of a rate below which an exploratory solve ends, rad or m: a descent takes its posture on from there.
+const EXPLORATORY_TOLERANCE: f64 = 1e-5;
 /// Steps of an approach to the tasks.
 const APPROACH_STEPS: usize = 40;
 /// Missing contact force and moment that are allowed to postures of each stage, body weights (times 1 m).
@@ -131,21 +133,24 @@ impl<'a> Solvers<'a> {
         }
         levels.insert(slot, PriorityLevel::default());
         // Exploratory steps of priorities pass over shallow minima, in which a descent ends.
-        let engine = |max_steps: usize, local_minima: usize, levels: &[PriorityLevel]| {
+        let engine = |options: Options, levels: &[PriorityLevel]| {
             let (supports, levels) = (search.supports.to_vec(), levels.to_vec());
-            let options = Options { max_steps, local_minima, ..options };
             let mut engine =
                 Engine::with_supports(search.model, search.start, supports, levels, search.loads, options)?;
             search.locked.iter().for_each(|&rate| engine.lock(rate));
             search.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
             Ok::<_, SearchError>(engine)
         };
-        let exploratory = EXPLORATORY_STEPS.min(options.max_steps);
-        let (most, minima) = (options.max_steps, options.local_minima);
-        let mut engines =
-            [engine(exploratory, 0, &levels)?, engine(most, minima.min(1), &levels)?, engine(most, minima, &levels)?];
+        let exploratory = Options {
+            max_steps: EXPLORATORY_STEPS.min(options.max_steps),
+            local_minima: 0,
+            step_tolerance: EXPLORATORY_TOLERANCE.max(options.step_tolerance),
+            ..options
+        };
+        let settling = Options { local_minima: options.local_minima.min(1), ..options };
+        let mut engines = [engine(exploratory, &levels)?, engine(settling, &levels)?, engine(options, &levels)?];
         engines[0].set_hessian_model(HessianModel::Partial);
-        let approach = engine(APPROACH_STEPS, 0, &levels[..=slot])?;
+        let approach = engine(Options { local_minima: 0, ..options }, &levels[..=slot])?;
         Ok(Self { search, engines, approach, slot, reached: vec![] })
     }
 

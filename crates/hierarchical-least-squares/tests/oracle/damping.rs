@@ -5,7 +5,7 @@ use crate::conditions::{Answer, violations};
 use crate::generator;
 use crate::generator::{Draw, DrawOptions, Scaling, draw, empty_level, normal, random};
 use crate::linear;
-use crate::{SAME, all_problems, difference, largest, seed, unscaled};
+use crate::{SAME, Tally, all_problems, difference, largest, seed, unscaled};
 use hierarchical_least_squares::{Problem, Solver, Status};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
@@ -239,6 +239,47 @@ fn damped_levels_are_optimal_from_any_start() {
         Ok(())
     });
     tally.close();
+}
+
+/// The steps of a trust region. In the first problem the same changes of the working set once followed each other without end.
+#[test]
+fn steps_within_small_bounds_are_solved() {
+    small_bounds(7 ^ 32, 1318, &mut Tally::default()).unwrap();
+    let seed = seed() ^ 32;
+    let tally = all_problems(2000, |index, tally| small_bounds(seed, index, tally));
+    tally.close();
+}
+
+/// Every unknown within the same small bounds, and levels far from their targets, so that most unknowns are at a bound and more constraints are
+/// active than are independent: every level satisfies the optimality conditions, also from the working set of the problem with other bounds.
+fn small_bounds(seed: u64, index: usize, tally: &mut Tally) -> Result<(), String> {
+    let rng = &mut random(seed, index);
+    let (scaling, inequalities) = (Scaling::ByLevel, index & 1 == 0);
+    let options = DrawOptions { conflicting: true, scaling, bounds: false, inequalities, largest: 60 };
+    let (mut draw, _) = draw(rng, options);
+    draw.levels.push(rest(rng, draw.n));
+    let mut problem = draw.problem();
+    for (k, rows) in draw.levels.iter().enumerate() {
+        let damped = k > 0 && k + 1 < draw.levels.len();
+        problem.levels[k].damping = if damped { rows[0].scale * generator::log_uniform(rng, 1e-2, 1.0) } else { 0.0 };
+    }
+    let about = |what: String| Err(format!("{}: {what}", draw.describe()));
+    let mut solver = Solver::new();
+    for _ in 0..4 {
+        let most = generator::log_uniform(rng, 1e-7, 1e-1);
+        problem.lower.fill(-most);
+        problem.upper.fill(most);
+        let status = solver.solve_next(&problem);
+        if status != Ok(Status::Solved) {
+            return about(format!("within {most:.1e}: {status:?} after {} changes", solver.changes()));
+        }
+        let seen = violations(&problem, &draw.scales(), &Answer::of(&solver, problem.levels.len()));
+        if !seen.are_rounding() {
+            return about(format!("within {most:.1e}: {seen:?}"));
+        }
+        tally.violations.largest(&seen);
+    }
+    Ok(())
 }
 
 /// Equations for most single unknowns, all with the same weight.
