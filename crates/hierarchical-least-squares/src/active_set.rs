@@ -33,7 +33,7 @@ pub(crate) struct ActiveSet {
     order: Vec<usize>,
     /// Workspace of [`ActiveSet::refactorise`].
     constraints: Vec<Constraint>,
-    /// What the level has dropped.
+    /// Constraints that the level has dropped.
     pub(crate) dropped: Dropped,
     changes: usize,
     most_changes: usize,

@@ -51,10 +51,10 @@ impl Dropped {
         if !self.dropped.contains(&(constraint, side)) {
             return;
         }
-        match self.returned.iter_mut().find(|(returned, _)| *returned == constraint) {
-            Some((_, times)) => *times += 1,
-            None if self.returned.len() < REMEMBERED => self.returned.push((constraint, 1)),
-            None => {}
+        if let Some((_, times)) = self.returned.iter_mut().find(|(returned, _)| *returned == constraint) {
+            *times += 1;
+        } else if self.returned.len() < REMEMBERED {
+            self.returned.push((constraint, 1));
         }
     }
 
