@@ -184,6 +184,7 @@ impl ActiveSet {
 
     /// Drops a constraint and updates the factor.
     pub(crate) fn drop_constraint(&mut self, problem: &Problem, dropped: Constraint) {
+        self.dropped.drop(dropped, self.working_set.side(dropped));
         match dropped {
             Constraint::Bound(i) => self.working_set.bounds[i] = Side::Inactive,
             Constraint::Row(row) => self.working_set.set_row(row, RowState::Inactive, Side::Inactive),

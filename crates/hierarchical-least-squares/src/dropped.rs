@@ -63,3 +63,51 @@ impl Dropped {
         self.returned.iter().any(|(returned, times)| *returned == constraint && *times >= RETURNS)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Changes of a level that meets the limits `back` after it has dropped `dropped`, so many times; `moves`: with what blocks the step on which the
+    /// iterate moves between, if anything does.
+    fn repeated(times: usize, dropped: &[usize], moves: Option<usize>, back: &[usize]) -> Dropped {
+        let mut level = Dropped::with_capacity();
+        let bound = Constraint::Bound;
+        for _ in 0..times {
+            dropped.iter().for_each(|&i| level.drop(bound(i), Side::Upper));
+            if let Some(i) = moves {
+                level.iterate_moves(Some(Blocking { share: 0.5, constraint: bound(i), side: Side::Upper }));
+            }
+            back.iter().for_each(|&i| level.block(bound(i), Side::Upper));
+        }
+        level
+    }
+
+    fn held(level: &Dropped) -> Vec<usize> {
+        (0..300).filter(|&i| level.is_held(Constraint::Bound(i))).collect()
+    }
+
+    #[test]
+    fn a_constraint_that_comes_back_at_once_is_held_and_one_that_the_iterate_left_is_not() {
+        assert_eq!(held(&repeated(RETURNS - 1, &[4], None, &[4])), []);
+        assert_eq!(held(&repeated(RETURNS, &[4], None, &[4])), [4]);
+        assert_eq!(held(&repeated(RETURNS, &[4, 7, 2], None, &[7, 2, 4])), [2, 4, 7]);
+        // The step for which it was dropped is blocked by itself, with rounding for a way.
+        assert_eq!(held(&repeated(RETURNS, &[7, 4], Some(4), &[4, 7])), [4]);
+        assert_eq!(held(&repeated(RETURNS, &[4], Some(7), &[7, 4])), []);
+        let mut level = repeated(RETURNS, &[4], None, &[4]);
+        level.clear();
+        assert_eq!(held(&level), []);
+        level.drop(Constraint::Bound(4), Side::Lower);
+        level.block(Constraint::Bound(4), Side::Upper);
+        assert_eq!(level.returned, []);
+    }
+
+    #[test]
+    fn a_level_remembers_the_last_constraints_that_it_dropped() {
+        let all: Vec<usize> = (0..300).collect();
+        let level = repeated(RETURNS, &all, None, &all);
+        assert_eq!(held(&level), Vec::from_iter(300 - REMEMBERED..300));
+        assert_eq!((level.dropped.len(), level.returned.len()), (REMEMBERED, REMEMBERED));
+    }
+}

@@ -65,7 +65,6 @@ impl LevelSolver {
     /// Minimises level `k` and fixes its result for the levels below. Returns `false` after too many changes of the working
     /// set.
     pub(crate) fn solve(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize) -> bool {
-        set.dropped.clear();
         choose_residual_rows(problem, set, k);
         self.y.resize(problem.unknowns(), 0.0);
         self.by_constraints_above.clear();
@@ -87,7 +86,6 @@ impl LevelSolver {
             if !set.count_change() {
                 return false;
             }
-            set.dropped.drop(constraint, set.working_set.side(constraint));
             set.factor.truncate(self.above);
             match constraint {
                 Constraint::Row(row) if set.working_set.states[row] == RowState::Residual => {

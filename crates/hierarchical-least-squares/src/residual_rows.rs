@@ -4,7 +4,7 @@
 use crate::active_set::ActiveSet;
 use crate::factor::Position;
 use crate::problem::Problem;
-use crate::working_set::{RowState, Side};
+use crate::working_set::{Constraint, RowState, Side};
 
 /// Residual rows in the order in which they joined.
 #[derive(Clone, Debug, Default)]
@@ -105,6 +105,7 @@ pub(crate) fn target(problem: &Problem, set: &ActiveSet, row: usize) -> f64 {
 
 /// Drops a residual row whose multiplier has the wrong sign: it is satisfied, or violates its other limit.
 pub(crate) fn drop_residual_row(problem: &Problem, set: &mut ActiveSet, row: usize) {
+    set.dropped.drop(Constraint::Row(row), set.working_set.sides[row]);
     let (lower, upper) = set.rows.limits(problem, row);
     let (value, rounding) = (set.value(problem, row), set.rounding(row));
     let (state, side) = match set.working_set.sides[row] {

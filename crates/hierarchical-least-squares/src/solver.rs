@@ -131,6 +131,7 @@ impl Solver {
         let set = &mut self.active_set;
         (0..problem.levels.len()).all(|k| {
             let is_last = k + 1 == problem.levels.len();
+            set.dropped.clear();
             let outcome = if is_last { self.identity_level.solve(problem, set, k) } else { Outcome::NotApplicable };
             match outcome {
                 Outcome::NotApplicable => self.level.solve(problem, set, k),
