@@ -105,10 +105,11 @@ fn random_worlds_keep_the_promises_of_every_sample_and_repeat_to_the_bit() {
 
 /// Worlds in which an error above relief once rose by 1 mm to 2 cm: the solver moved what a level above held (869; 853 is kept since that was
 /// mended, too), the judge did not count what a foot carries beyond its share (368), or a whole step left as much of second order (962). In 358, 433 and 460 a
-/// foot carried 0.1 to 27 % of the weight beyond its share for a while.
+/// foot carried 0.1 to 27 % of the weight beyond its share for a while, in 1843 13 % in one sample: half of a step still led to the very edge of the
+/// supports.
 #[test]
 fn errors_above_relief_rise_by_less_than_a_millimetre_where_they_once_rose_by_more() {
-    for seed in [358, 368, 433, 460, 853, 869, 962] {
+    for seed in [358, 368, 433, 460, 853, 869, 962, 1843] {
         let world = World::random(&mut Random::seed_from_u64(seed));
         let (course, _) = course(&world.scenario().unwrap()).unwrap();
         course.targets.are_kept(&format!("seed {seed}"));
@@ -153,8 +154,10 @@ fn slow_worlds_take_less_than_ten_seconds_of_processor_a_step() {
         ("10214", include_bytes!("slow-10214.toml")),
         ("10338", include_bytes!("slow-10338.toml")),
     ];
-    for (name, bytes) in files {
-        let scenario = read_scenario(name, bytes, None).unwrap();
+    let files = files.map(|(name, bytes)| (name, read_scenario(name, bytes, None).unwrap()));
+    // Three tired groups ask for a step at once: each search took four seconds, and was made three times.
+    let world = World::random(&mut Random::seed_from_u64(259)).scenario().unwrap();
+    for (name, scenario) in files.into_iter().chain([("259", world)]) {
         let begin = processor_time();
         let mut run = Run::new(&scenario).unwrap();
         let mut slowest = processor_time() - begin;

@@ -7,7 +7,7 @@
 //!   reject the last step if it raised the merit, and go back
 //!   complete the problem: bounds, damping, Newton level       step_rule.rs
 //!   solve it, and move the posture            hierarchical_least_squares
-//!   in a run: take half of a step that leaves much of second order     halved_step.rs
+//!   in a run: halve a step that leaves much of second order           halved_step.rs
 //! until steps are short or idle
 //! ```
 
@@ -42,8 +42,8 @@ pub struct Engine<'a> {
     rule: StepRule,
     /// The posture in which the last step began.
     pub(super) last: Posture,
-    /// Half of the change of that step, by rate, where it was halved.
-    pub(super) half: Vec<f64>,
+    /// The change of that step, by rate, or the part of it that was taken.
+    pub(super) part: Vec<f64>,
     slope: SlopeAlongMotion,
     pub(super) basin_hopping: BasinHopping,
 }
@@ -94,7 +94,7 @@ impl<'a> Engine<'a> {
             linearisation,
             rule,
             last: settings.model.default_posture(),
-            half: vec![0.0; settings.model.rates().len()],
+            part: vec![0.0; settings.model.rates().len()],
             slope: SlopeAlongMotion::new(&settings, &contact),
             basin_hopping: BasinHopping::new(&settings.model),
             iterate: Iterate::new(&settings.model, contact),

@@ -1,35 +1,44 @@
-//! Takes half of a step that would lead away from tasks by what it leaves of second order.
+//! Halves a step that would lead away from tasks by what it leaves of second order.
 
 use super::engine::Engine;
 use super::error::EngineError;
 use super::linearisation::{SHARES, missing};
 use crate::posture::Posture;
 
+/// A step is halved so many times at most. Assumed.
+const MOST_HALVINGS: usize = 4;
+
 impl Engine<'_> {
-    /// One step as [`Engine::step`], or half of it where all of it leaves more than `tolerance` of second order in one of the first `levels`, or in what
-    /// supports carry beyond their shares: an error, in the unit of the level, that is larger by more than the one before, and than the one that the linear problem foresaw. Half of a step
-    /// leaves a quarter as much. Returns the largest change of a rate, rad or m.
+    /// One step as [`Engine::step`], halved while it leaves more than `tolerance` of second order in one of the first `levels`, or in what supports carry
+    /// beyond their shares: an error, in the unit of the level, that is larger by more than the one before, and than the one that the linear problem
+    /// foresaw. Half of a step leaves a quarter as much; at the edge of the supports what they carry may jump, and where a sixteenth is too long
+    /// the body stays. Returns the largest change of a rate, rad or m.
     ///
     /// # Errors
     /// As [`Engine::step`].
-    pub(crate) fn step_or_half(
+    pub(crate) fn step_or_part(
         &mut self,
         posture: &mut Posture,
         levels: usize,
         tolerance: f64,
     ) -> Result<f64, EngineError> {
-        let largest = self.step(posture)?.largest;
-        // A posture in which a law gives no numbers is refused when its torques are computed.
-        if self.evaluate(posture).is_err() || !self.left_second_order(levels, tolerance) {
-            return Ok(largest);
+        let mut largest = self.step(posture)?.largest;
+        let rates = self.part.len();
+        self.part.copy_from_slice(&self.solver.solution()[..rates]);
+        for halvings in 0..=MOST_HALVINGS {
+            // A posture in which a law gives no numbers is refused when its torques are computed.
+            if self.evaluate(posture).is_err() || !self.left_second_order(levels, tolerance) {
+                return Ok(largest);
+            }
+            posture.values_mut().copy_from_slice(self.last.values());
+            if halvings < MOST_HALVINGS {
+                self.part.iter_mut().for_each(|change| *change *= 0.5);
+                posture.displace(&self.settings.model, &self.part);
+                self.settings.keep_ranges(posture);
+                largest *= 0.5;
+            }
         }
-        for (half, whole) in self.half.iter_mut().zip(self.solver.solution()) {
-            *half = 0.5 * whole;
-        }
-        posture.values_mut().copy_from_slice(self.last.values());
-        posture.displace(&self.settings.model, &self.half);
-        self.settings.keep_ranges(posture);
-        Ok(0.5 * largest)
+        Ok(0.0)
     }
 
     /// Whether the last step, to the posture that was evaluated last, has left so much.

@@ -27,6 +27,7 @@ impl Simulation<'_> {
     pub(super) fn decide(&mut self) -> Result<(), ScenarioError> {
         let (mut decided, mut moves) = (false, false);
         self.record.searched_before = self.state.searched;
+        self.changes = None;
         for i in 0..self.state.decisions.len() {
             if !self.state.groups[i].iter().any(|group| group.recovering) {
                 self.state.requests[i].end();

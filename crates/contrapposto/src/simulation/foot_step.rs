@@ -59,16 +59,18 @@ pub(super) struct PlannedStep {
     pub(super) step: FootStep,
 }
 
-/// The step of least effort afterwards that serves its purpose, if `budget` of work shows one.
-pub(super) fn plan_step(
-    body: &mut BodyMotion<'_>,
+/// The postures after a change of a support, that of least effort first.
+pub(super) type Changes = Vec<(Offer, RelaxedPosture)>;
+
+/// Searches, for `budget` of work, for the postures after every change that the supports allow. Whose relief asks plays no part.
+pub(super) fn search_changes(
+    body: &BodyMotion<'_>,
     posture: &Posture,
     purpose: Purpose<'_>,
     budget: usize,
-) -> Result<Searched<Option<PlannedStep>>, ScenarioError> {
+) -> Result<Searched<Changes>, ScenarioError> {
     let scenario = body.scenario();
-    let (mut left, mut cut) = (budget, false);
-    let (effort, mut found) = (body.effort(), vec![]);
+    let (effort, mut left, mut searched) = (body.effort(), budget, Searched::<Changes>::default());
     let offers = offers(body, purpose);
     for (k, &offer) in offers.iter().enumerate() {
         let Some(changed) = Changed::by(body, posture, offer, &mut left)? else { continue };
@@ -80,19 +82,33 @@ pub(super) fn plan_step(
         let work = left.saturating_sub(budget / SHARE_OF_WAYS) / (offers.len() - k);
         let share = Budget { scattered: 0, work, carriers_stay: true };
         let limits = scenario.limits_with(&changed.numbers);
-        let Ok(searched) = search(scenario, now, (&changed.supports, &limits), &locked, share) else { continue };
-        left = left.saturating_sub(searched.work);
-        cut |= searched.cut;
-        found.extend(searched.found.into_iter().map(|candidate| (offer, candidate)));
+        let Ok(ways) = search(scenario, now, (&changed.supports, &limits), &locked, share) else { continue };
+        left = left.saturating_sub(ways.work);
+        searched.cut |= ways.cut;
+        searched.found.extend(ways.found.into_iter().map(|candidate| (offer, candidate)));
     }
-    found.sort_by(|(_, a), (_, b)| a.relaxed.effort.total_cmp(&b.relaxed.effort));
-    for (offer, candidate) in found {
+    searched.found.sort_by(|(_, a), (_, b)| a.relaxed.effort.total_cmp(&b.relaxed.effort));
+    searched.work = budget - left;
+    Ok(searched)
+}
+
+/// The step of least effort afterwards that serves its purpose, of the `changes` that were found, if `budget` of work shows a way to one.
+pub(super) fn plan_step(
+    body: &BodyMotion<'_>,
+    posture: &Posture,
+    purpose: Purpose<'_>,
+    changes: &Changes,
+    budget: usize,
+) -> Result<Searched<Option<PlannedStep>>, ScenarioError> {
+    let scenario = body.scenario();
+    let (effort, mut left) = (body.effort(), budget);
+    for (offer, candidate) in changes {
         let (support, to) = (&scenario.supports[offer.number], &candidate.relaxed.posture);
         let (before, after) = (middle(body, posture, support)?, middle(body, to, support)?);
         let worth = match purpose {
             Purpose::Relief(tired) => {
                 let easier = candidate.relaxed.effort < WORTH_A_STEP * effort;
-                easier && relieves(&candidate, offer.kind, posture, tired)
+                easier && relieves(candidate, offer.kind, posture, tired)
             }
             // The effort of a posture that misses its task says nothing: it only has to be nearer.
             Purpose::Reach(errors) => is_better(&candidate.relaxed, 0.0, errors),
@@ -100,15 +116,15 @@ pub(super) fn plan_step(
         if !worth || (after - before).norm() < LEAST_SHIFT {
             continue;
         }
-        if let Some(path) = body.way(posture, to, Some(offer), &mut left) {
+        if let Some(path) = body.way(posture, to, Some(*offer), &mut left) {
             let (relieves, kind) = (purpose.relieves(), offer.kind);
             let (place, effort) = ((before.into(), after.into()), (effort, candidate.relaxed.effort));
             let step = FootStep { support: offer.number, kind, relieves, time: (0.0, 0.0), place, effort };
-            return Ok(Searched { found: Some(PlannedStep { path, step }), minima: vec![], work: budget - left, cut });
+            let found = Some(PlannedStep { path, step });
+            return Ok(Searched { found, minima: vec![], work: budget - left, cut: false });
         }
     }
-    cut |= left == 0;
-    Ok(Searched { found: None, minima: vec![], work: budget - left, cut })
+    Ok(Searched { found: None, minima: vec![], work: budget - left, cut: left == 0 })
 }
 
 impl Purpose<'_> {

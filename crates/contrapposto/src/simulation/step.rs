@@ -1,6 +1,7 @@
 //! Advances a scenario by one time step (Rodriguez & Boulic 2007, section 3).
 
 use super::easiest::{Eased, Searched};
+use super::foot_step::Changes;
 use super::motion::Motion;
 use super::muscle_course::{MuscleCourse, MuscleState};
 use super::path::Path;
@@ -31,6 +32,8 @@ pub struct Simulation<'a> {
     pub(super) strength: Option<PosedStrength>,
     pub(super) tiring: Option<MuscleCourse>,
     pub(super) record: Record,
+    /// Postures after a change of a support that a search of this time step has found: several tired groups may ask for one.
+    pub(super) changes: Option<Changes>,
     /// Values of the posture and active torque before the last motion.
     values_before: Vec<f64>,
     pub(super) active_before: Vec<f64>,
@@ -118,6 +121,7 @@ impl<'a> Simulation<'a> {
             strength,
             tiring: MuscleCourse::of(scenario)?,
             record: Record::new(n),
+            changes: None,
             values_before: vec![0.0; n],
             active_before: vec![0.0; n],
             relief_step: vec![0.0; n],

@@ -4,7 +4,7 @@
 use super::approach::Approach;
 use super::body_motion::BodyMotion;
 use super::easiest::{Budget, Eased, SEARCH_BUDGET, SEARCH_BUDGET_OF_STEP, Searched};
-use super::foot_step::{PlannedStep, Purpose, Tired, plan_step};
+use super::foot_step::{Changes, PlannedStep, Purpose, Tired, plan_step, search_changes};
 use super::{FootStep, ScenarioError, Simulation, StepKind};
 use crate::hybrid::Decision;
 use crate::model::Side;
@@ -93,14 +93,36 @@ impl Simulation<'_> {
         if self.state.step_tried[i] || self.state.path.is_some() {
             return Ok(());
         }
-        let Some(budget) = self.search_budget() else { return Ok(()) };
-        let Some(body) = self.motion.body_mut() else { return Ok(()) };
-        self.state.step_tried[i] = true;
+        if self.motion.body().is_none() {
+            return Ok(());
+        }
         let tired = Tired { coordinate: i, side, load: self.record.load[i], toward };
-        let planned = plan_step(body, &self.state.posture, Purpose::Relief(tired), budget)?;
-        self.state.approach.is_over |= planned.found.is_some();
+        let known = self.changes.take();
+        let Some((planned, changes)) = self.planned_step(Purpose::Relief(tired), known)? else { return Ok(()) };
+        self.changes = Some(changes);
+        self.state.step_tried[i] = true;
+        self.state.approach.is_over |= planned.is_some();
         self.begin(planned);
         Ok(())
+    }
+
+    /// The step that serves a purpose, of the changes that are `known` from a search in this time step, or of those that a search finds; with these
+    /// changes. `None` where the budget of searches is used up.
+    fn planned_step(
+        &mut self,
+        purpose: Purpose<'_>,
+        known: Option<Changes>,
+    ) -> Result<Option<(Option<PlannedStep>, Changes)>, ScenarioError> {
+        let Some(budget) = self.search_budget() else { return Ok(None) };
+        let Some(body) = self.motion.body() else { return Ok(None) };
+        let changes = match known {
+            Some(found) => Searched { found, ..Searched::default() },
+            None => search_changes(body, &self.state.posture, purpose, budget)?,
+        };
+        let left = budget.saturating_sub(changes.work);
+        let planned = plan_step(body, &self.state.posture, purpose, &changes.found, left)?;
+        self.count_search(changes.work + planned.work, changes.cut || planned.cut);
+        Ok(Some((planned.found, changes.found)))
     }
 
     /// Looks for a hand at rest to take up, once in an event: where the body is as near to its tasks as it comes with the hand there and one of
@@ -115,19 +137,16 @@ impl Simulation<'_> {
         if !stalls && !self.motion.is_at_rest() {
             return Ok(());
         }
-        let Some(budget) = self.search_budget() else { return Ok(()) };
-        let Some(body) = self.motion.body_mut() else { return Ok(()) };
-        let planned = plan_step(body, &self.state.posture, Purpose::Reach(&errors), budget)?;
+        let Some((planned, _)) = self.planned_step(Purpose::Reach(&errors), None)? else { return Ok(()) };
         self.state.approach = Approach::default();
-        self.state.approach.is_over = planned.found.is_none();
+        self.state.approach.is_over = planned.is_none();
         self.begin(planned);
         Ok(())
     }
 
     /// Begins the step that a search has found, if any.
-    fn begin(&mut self, planned: Searched<Option<PlannedStep>>) {
-        self.count_search(planned.work, planned.cut);
-        if let Some(PlannedStep { path, mut step }) = planned.found {
+    fn begin(&mut self, planned: Option<PlannedStep>) {
+        if let Some(PlannedStep { path, mut step }) = planned {
             step.time.0 = self.state.steps as f64 * self.scenario.run.step;
             self.state.foot_steps.push(step);
             self.state.path = Some(path);
