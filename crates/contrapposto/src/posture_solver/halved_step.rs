@@ -6,7 +6,7 @@ use super::linearisation::{SHARES, missing};
 use crate::posture::Posture;
 
 /// A step is halved so many times at most. Assumed.
-const MOST_HALVINGS: usize = 4;
+const STEP_HALVINGS: usize = 4;
 
 impl Engine<'_> {
     /// One step as [`Engine::step`], halved while it leaves more than `tolerance` of second order in one of the first `levels`, or in what supports carry
@@ -25,13 +25,13 @@ impl Engine<'_> {
         let mut largest = self.step(posture)?.largest;
         let rates = self.part.len();
         self.part.copy_from_slice(&self.solver.solution()[..rates]);
-        for halvings in 0..=MOST_HALVINGS {
+        for halvings in 0..=STEP_HALVINGS {
             // A posture in which a law gives no numbers is refused when its torques are computed.
             if self.evaluate(posture).is_err() || !self.left_second_order(levels, tolerance) {
                 return Ok(largest);
             }
             posture.values_mut().copy_from_slice(self.last.values());
-            if halvings < MOST_HALVINGS {
+            if halvings < STEP_HALVINGS {
                 self.part.iter_mut().for_each(|change| *change *= 0.5);
                 posture.displace(&self.settings.model, &self.part);
                 self.settings.keep_ranges(posture);
