@@ -16,7 +16,7 @@
 //! | `newton_level`, `multiplier_estimate` | a level with its second derivative |
 //! | `step_rule`, `priority_rule`, `merit_rule` | the two rules by which steps are completed and judged |
 //! | `engine` | the loop |
-//! | `halved_step` | a half, a quarter, ... of a step, where all of it would lead away from tasks |
+//! | `halved_step` | half of a step, or less, where all of it would lead away from tasks or break a share |
 //! | `local_minima` | descents to local minima of effort |
 //! | `slope` | how a torque changes along the motion that supports and tasks allow |
 //! | `tolerances` | every tolerance, with its unit |

@@ -33,7 +33,7 @@ const SLOW_STEPS: u32 = 30;
 const RESTING: u32 = u32::MAX;
 /// A slope is computed anew when some coordinate has moved farther, rad or m.
 const SLOPE_VALIDITY: f64 = 0.005;
-/// A step is halved where it leaves more of second order in a task above relief, m or rad. Assumed.
+/// Half of a step is taken where all of it leaves more of second order in a task above relief, m or rad. Assumed.
 const SECOND_ORDER: f64 = 5e-4;
 /// Steps within which balance must be recovered after an event.
 const RECOVERY_STEPS: usize = 300;
