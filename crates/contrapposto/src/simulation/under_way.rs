@@ -93,9 +93,6 @@ impl Simulation<'_> {
         if self.state.step_tried[i] || self.state.path.is_some() {
             return Ok(());
         }
-        if self.motion.body().is_none() {
-            return Ok(());
-        }
         let tired = Tired { coordinate: i, side, load: self.record.load[i], toward };
         let known = self.changes.take();
         let Some((planned, changes)) = self.planned_step(Purpose::Relief(tired), known)? else { return Ok(()) };
