@@ -192,7 +192,7 @@ fn wrong_numbers_of_things_are_refused_at_their_key_with_the_accepted_range() {
     let cases = [
         ("[[table]]\nheight_m = 75\nedge_m = 0.3\n", "height_m is 75 m; it must lie in 0..2.5 m"),
         ("[[table]]\nheight_m = 75\nedge_m = 0.3\n", "0.75 m? lengths are in metres"),
-        ("[[box]]\nmass_kg = -1\nsize_m = [1, 1, 1]\n", "mass"),
+        ("[[box]]\nmass_kg = -4\nsize_m = [1, 1, 1]\n", "mass_kg is -4 kg; it must lie in 0..1000000000 kg"),
         ("[[box]]\nmass_kg = 1\nsize_m = [1, 1]\n", "2 numbers are given; 3 are due"),
         ("[[tool]]\nhand = \"right\"\n", "neither mass nor force nor place"),
         ("[[handle]]\nat_m = [0.5, 1, 0]\npush_n = 1\npull_n = 1\n", "both pushed and pulled"),

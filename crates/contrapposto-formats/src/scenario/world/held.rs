@@ -16,6 +16,8 @@ use crate::toml_file::Located;
 
 /// Distance of two hands on a handle, m, where the file names none.
 const SPACING: f64 = 0.4;
+/// Masses of a box, kg: those of a load.
+const BOX_MASSES: (f64, f64) = (0.0, 1e9);
 /// Length of a handle beyond the two hands, m (drawn only).
 const BEYOND_HANDS: f64 = 0.12;
 /// Greatest distance of two hands, m.
@@ -51,10 +53,11 @@ fn both_hands(word: &Word<'_>, model: &Model, key: &str) -> Result<[(usize, f64)
 fn read_box(world: &mut World, word: &Word<'_>, text: &BoxText, model: &Model) -> Result<(), InputError> {
     let size = word.size(text.size_m)?;
     word.number("size_m", size[2], (0.0, WIDEST), "m")?;
+    let mass = word.number("mass_kg", text.mass_kg, BOX_MASSES, "kg")?;
     let middle = text.at_m.map(|at| word.place(at)).transpose()?;
     let mut hands = vec![];
     for (hand, side) in both_hands(word, model, "mass_kg")? {
-        let weight = LoadKind::Weight(0.5 * text.mass_kg);
+        let weight = LoadKind::Weight(0.5 * mass);
         world.loads.push(load(word, model, (hand, model.segments()[hand].center_of_mass), weight)?);
         let aside = 0.5 * side * size[2];
         let target =
