@@ -20,7 +20,8 @@ fn answer(template: &str, change: (&str, &str)) -> Vec<String> {
     let text = std::fs::read_to_string(&job).unwrap();
     assert!(text.contains(change.0), "{text}");
     std::fs::write(&job, text.replace(change.0, change.1)).unwrap();
-    let run = contrapposto(["simulate", job.to_str().unwrap(), "--no-report"]).run();
+    let run = contrapposto(["simulate", job.to_str().unwrap()]).folder(folder.path()).run();
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is written without --out");
     run.stdout.lines().map(|line| line.replace('\u{a0}', " ")).collect()
 }
 

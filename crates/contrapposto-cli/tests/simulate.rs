@@ -280,11 +280,16 @@ fn without_a_report_the_answer_is_the_same_and_nothing_is_written() {
     };
     let (report, files, code) = json(&["--out", with.to_str().unwrap()]);
     assert_eq!(files, FILES_OF_A_BODY.len());
-    assert_eq!(json(&["--no-report"]), (report, 0, code));
+    assert_eq!(json(&["--no-report"]), (report.clone(), 0, code));
+    assert_eq!(json(&[]), (report, 0, code));
     assert_eq!(std::fs::read_dir(&without).unwrap().count(), 0);
     for other in ["--resume", "--figures", "--out=x"] {
         let run = contrapposto(["simulate", "-", "--no-report", other]).stdin(&scenario).run();
         assert_eq!(run.code, 2, "{other}");
+    }
+    for folder_needed in ["--resume", "--figures"] {
+        let run = contrapposto(["simulate", "-", folder_needed]).stdin(&scenario).run();
+        assert!(run.code == 2 && run.notes().contains("--out <DIR>"), "{}", run.notes());
     }
 }
 

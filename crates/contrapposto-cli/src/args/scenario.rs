@@ -17,18 +17,18 @@ pub(crate) struct SimulateArgs {
     /// Start in the posture of a result: the coordinates of a pose.json, or of the first posture of a relax.json.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) start_from: Option<PathBuf>,
-    /// Folder for the results; made if it is not there.
-    #[arg(long, value_name = "DIR", required_unless_present = "no_report")]
+    /// Folder for the results; made if it is not there. Nothing is written without it: the answer goes to standard output only.
+    #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Draw and write nothing: the answer goes to standard output only, as text or with --json.
-    #[arg(long, conflicts_with_all = ["out", "resume", "figures"])]
+    /// Draw and write nothing, as without --out.
+    #[arg(long, conflicts_with = "out")]
     pub(crate) no_report: bool,
     /// Continue from the snapshot that an interrupted run left in DIR.
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     pub(crate) resume: bool,
     /// Also draw, into DIR/figures, the body at the start, at its hardest and at the end, and of the five joints that matter most
     /// their torques over angle and their course, each as SVG and PNG.
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     pub(crate) figures: bool,
     /// Also search for the largest load, by runs of the job with other loads: the one that a person of mean strength holds for the time
     /// asked, and the one of weaker people. No further run begins after as many solver steps as for changes (`--suggest-steps`), counted anew.
@@ -110,14 +110,14 @@ pub(crate) struct PoseArgs {
     /// Start in the posture of a result: the coordinates of a pose.json, or of the first posture of a relax.json.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) start_from: Option<PathBuf>,
-    /// Folder for the results; made if it is not there.
-    #[arg(long, value_name = "DIR", required_unless_present = "no_report")]
+    /// Folder for the results; made if it is not there. Nothing is written without it: the answer goes to standard output only.
+    #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Draw and write nothing: the answer goes to standard output only, as text or with --json.
-    #[arg(long, conflicts_with_all = ["out", "figures"])]
+    /// Draw and write nothing, as without --out.
+    #[arg(long, conflicts_with = "out")]
     pub(crate) no_report: bool,
     /// Also draw, into DIR/figures, the torques over angle of the five joints that work hardest, each as SVG and PNG.
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     pub(crate) figures: bool,
     /// Print pose.json instead of a table.
     #[arg(long)]
