@@ -287,6 +287,10 @@ fn without_a_report_the_answer_is_the_same_and_nothing_is_written() {
         let run = contrapposto(["simulate", "-", "--no-report", other]).stdin(&scenario).run();
         assert_eq!(run.code, 2, "{other}");
     }
+    for command in ["pose", "relax"] {
+        let run = contrapposto([command, "-", "--no-report", "--figures"]).stdin(&scenario).run();
+        assert_eq!(run.code, 2, "{command}");
+    }
     for folder_needed in ["--resume", "--figures"] {
         let run = contrapposto(["simulate", "-", folder_needed]).stdin(&scenario).run();
         assert!(run.code == 2 && run.notes().contains("--out <DIR>"), "{}", run.notes());

@@ -206,7 +206,7 @@ pub(crate) struct AssessArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Draw and write nothing, as without --out.
-    #[arg(long, conflicts_with = "out")]
+    #[arg(long, conflicts_with_all = ["out", "figures"])]
     pub(crate) no_report: bool,
     /// Also draw, into DIR/figures, the body at the start, at its hardest and at the end, and of the five joints that fail first
     /// their torques over angle and their course, each as SVG and PNG.

@@ -21,7 +21,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Draw and write nothing, as without --out.
-    #[arg(long, conflicts_with = "out")]
+    #[arg(long, conflicts_with_all = ["out", "resume", "figures"])]
     pub(crate) no_report: bool,
     /// Continue from the snapshot that an interrupted run left in DIR.
     #[arg(long, requires = "out")]
@@ -114,7 +114,7 @@ pub(crate) struct PoseArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Draw and write nothing, as without --out.
-    #[arg(long, conflicts_with = "out")]
+    #[arg(long, conflicts_with_all = ["out", "figures"])]
     pub(crate) no_report: bool,
     /// Also draw, into DIR/figures, the torques over angle of the five joints that work hardest, each as SVG and PNG.
     #[arg(long, requires = "out")]
@@ -145,7 +145,7 @@ pub(crate) struct RelaxArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Draw and write nothing, as without --out.
-    #[arg(long, conflicts_with = "out")]
+    #[arg(long, conflicts_with_all = ["out", "figures"])]
     pub(crate) no_report: bool,
     /// Also draw, into DIR/figures, the torques over angle of the five joints that work hardest, each as SVG and PNG.
     #[arg(long, requires = "out")]
