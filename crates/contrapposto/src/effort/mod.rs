@@ -8,6 +8,7 @@
 
 pub(crate) mod basin_hopping;
 mod decoupled_subtrees;
+mod dual_active_set;
 pub(crate) mod hessian;
 mod iterate;
 mod passive_hessian;

@@ -18,8 +18,15 @@ pub(super) const INDEPENDENT_ROW: f64 = 1e-6;
 pub(super) const WORKING_SET_WEIGHT: f64 = 10.0;
 /// Share of the largest diagonal entry of each kind (rates, forces) that is always added to the diagonal.
 pub(super) const DIAGONAL_SHARE: f64 = 1e-10;
-/// Changes of the working set; in the second half nothing leaves it.
-pub(super) const WORKING_SET_CHANGES: usize = 14;
+/// Changes of the working set, of many constraints at once, after which the dual method finds it.
+pub(super) const WORKING_SET_CHANGES: usize = 3;
+/// Violation of a row or bound from which it joins the working set of the dual method, beside the length of the row.
+pub(super) const QP_VIOLATION: f64 = 1e-10;
+/// Part of a constraint outside the span of the working set below which it depends on that; share of its length. Also the slope of a multiplier, as
+/// a share of the largest, from which it falls.
+pub(super) const DEPENDENT_CONSTRAINT: f64 = 1e-10;
+/// Most changes of the dual method for each row and unknown.
+pub(super) const DUAL_CHANGES: usize = 10;
 /// Bounds violated by at least this share of the worst violation join the working set together.
 pub(super) const JOINING_SHARE: f64 = 0.3;
 /// Relative size below which a violation, multiplier or change is zero.

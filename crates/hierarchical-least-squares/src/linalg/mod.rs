@@ -23,5 +23,7 @@ pub use cholesky::{cholesky, pivoted_cholesky, semidefinite_cholesky};
 pub(crate) use least_squares::LeastSquares;
 pub use symmetric_eigen::SymmetricEigen;
 pub use triangular::{solve_lower, solve_lower_transposed, solve_upper, solve_upper_transposed};
-pub use vector::{add_outer_product, add_outer_products, add_scaled, add_symmetric_column, dot, norm};
-pub(crate) use vector::{add_scaled_pair, dot_pair, norm_and_nonzeros, rotate, rotation};
+pub use vector::{
+    add_outer_product, add_outer_products, add_scaled, add_symmetric_column, dot, norm, rotate, rotation,
+};
+pub(crate) use vector::{add_scaled_pair, dot_pair, norm_and_nonzeros};

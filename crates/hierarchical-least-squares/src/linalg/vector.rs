@@ -124,14 +124,14 @@ pub(crate) fn add_scaled_pair(t: &mut [f64], p: f64, a: &[f64], q: f64, b: &[f64
 
 /// Length `r`, cosine and sine of the Givens rotation that takes `(a, b)`, not both zero, to `(r, 0)`.
 #[inline]
-pub(crate) fn rotation(a: f64, b: f64) -> (f64, f64, f64) {
+pub fn rotation(a: f64, b: f64) -> (f64, f64, f64) {
     let r = (a * a + b * b).sqrt();
     (r, a / r, b / r)
 }
 
 /// Replaces `x` by `cosine x + sine y`, and `y` by `cosine y - sine x`.
 #[inline]
-pub(crate) fn rotate(x: &mut [f64], y: &mut [f64], cosine: f64, sine: f64) {
+pub fn rotate(x: &mut [f64], y: &mut [f64], cosine: f64, sine: f64) {
     let ((x, x_rest), (y, y_rest)) = (x.as_chunks_mut::<4>(), y.as_chunks_mut::<4>());
     let (c, s) = (f64x4::splat(cosine), f64x4::splat(sine));
     for (x, y) in x.iter_mut().zip(y) {
