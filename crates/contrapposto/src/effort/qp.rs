@@ -7,13 +7,13 @@
 //! the diagonal is regularised.
 //!
 //! From one step of a descent to the next few constraints change, and one or two changes of the working set, each of many constraints at once,
-//! find the solution. Where [`WORKING_SET_CHANGES`] do not, as these may follow each other without end, a [`dual_active_set`](super::dual_active_set)
-//! finds the working set of `M` with the squares of equations alone, which is strictly convex.
+//! find the solution (`qp_working_set.rs`). Where three do not, as such changes may follow each other without end, a dual method
+//! (`dual_active_set.rs`) finds the working set of `M` with the squares of equations alone, which is strictly convex.
 
-use super::dual_active_set::{Constraints, DualActiveSet};
+use super::dual_active_set::DualActiveSet;
 use super::tolerances::{
-    DIAGONAL_SHARE, FIRST_REGULARISATION, JOINING_SHARE, LARGEST_REGULARISATION, LEAVING_MULTIPLIER, QP_ZERO,
-    REGULARISATION_FACTOR, WORKING_SET_CHANGES, WORKING_SET_WEIGHT, ZERO_ROW,
+    DIAGONAL_SHARE, FIRST_REGULARISATION, LARGEST_REGULARISATION, QP_ZERO, REGULARISATION_FACTOR, WORKING_SET_WEIGHT,
+    ZERO_ROW,
 };
 use hierarchical_least_squares::linalg::{
     add_outer_products, add_scaled, add_symmetric_column, block_start, blocked_cholesky, dot, padded_width,
@@ -48,20 +48,20 @@ pub(crate) struct QuadraticProgram {
     weights: Vec<f64>,
     stiffened_gradient: Vec<f64>,
     /// Side at which each unknown lies at its bound, each row at its limit: -1, 1, or 0 for neither.
-    at_bound: Vec<i8>,
-    at_limit: Vec<i8>,
+    pub(super) at_bound: Vec<i8>,
+    pub(super) at_limit: Vec<i8>,
     /// Unknowns between their bounds.
-    free: Vec<usize>,
+    pub(super) free: Vec<usize>,
     /// Rows solved as equations.
-    working_set: Vec<usize>,
+    pub(super) working_set: Vec<usize>,
     /// `[R V z]` over `[. S -]`, see [`QuadraticProgram::factorise`].
-    factor: Vec<f64>,
+    pub(super) factor: Vec<f64>,
     /// `H d`; during a solve `M d` of the unknowns at bounds.
     product: Vec<f64>,
-    dual: DualActiveSet,
+    pub(super) dual: DualActiveSet,
     // Scratch.
     of_rows: Vec<f64>,
-    of_unknowns: Vec<f64>,
+    pub(super) of_unknowns: Vec<f64>,
 }
 
 impl QuadraticProgram {
@@ -95,7 +95,7 @@ impl QuadraticProgram {
     }
 
     /// Factorises with this regularisation, or the least one above it that makes the matrix positive definite.
-    fn factorise_regularised(&mut self, regularisation: &mut f64) -> Option<()> {
+    pub(super) fn factorise_regularised(&mut self, regularisation: &mut f64) -> Option<()> {
         loop {
             self.fill();
             if self.factorise(*regularisation) {
@@ -106,45 +106,6 @@ impl QuadraticProgram {
                 return None;
             }
         }
-    }
-
-    /// Solves, and changes many constraints at once, until nothing changes; `false` after [`WORKING_SET_CHANGES`].
-    fn change_many(&mut self, regularisation: &mut f64) -> Option<bool> {
-        for _ in 0..WORKING_SET_CHANGES {
-            self.list_working_set();
-            self.factorise_regularised(regularisation)?;
-            self.back_substitute();
-            if !self.change_working_set() {
-                return Some(true);
-            }
-        }
-        Some(false)
-    }
-
-    /// Solves with the working set that a dual method finds, or, where the squares of its inequalities do with less regularisation than the
-    /// equations alone, with the one that few changes of it lead to.
-    fn find_working_set(&mut self, regularisation: &mut f64) -> Option<()> {
-        let (n, mut less) = (self.n, *regularisation);
-        self.at_bound.fill(0);
-        self.working_set.clear();
-        self.free.clear();
-        self.free.extend(0..n);
-        self.factorise_regularised(regularisation)?;
-        let width = padded_width(n + 1);
-        self.of_unknowns.clear();
-        self.of_unknowns.extend((0..n).map(|i| self.factor[i * width + n]));
-        let Self { factor, rows, lower, upper, lower_bounds, upper_bounds, dual, .. } = self;
-        dual.solve(&Constraints { factor, width, rows, lower, upper, lower_bounds, upper_bounds }, &self.of_unknowns);
-        self.dual.write(&mut self.at_bound, &mut self.at_limit);
-        if less < *regularisation && self.change_many(&mut less) == Some(true) && less < *regularisation {
-            *regularisation = less;
-            return Some(());
-        }
-        self.dual.write(&mut self.at_bound, &mut self.at_limit);
-        self.list_constraints();
-        self.factorise_regularised(regularisation)?;
-        self.back_substitute();
-        Some(())
     }
 
     /// The least change of the last solution, measured by `M`, that changes the working-set rows by `change`.
@@ -205,34 +166,6 @@ impl QuadraticProgram {
         }
         let (lower, upper, weights) = (&self.lower, &self.upper, &self.weights);
         add_outer_products(&mut self.stiffened, n, &self.rows, |r| if lower[r] == upper[r] { weights[r] } else { 0.0 });
-    }
-
-    /// Lists free unknowns and working-set rows. Where most unknowns lie at bounds all are freed: changes of many at once seldom find such a
-    /// solution.
-    fn list_working_set(&mut self) {
-        if 2 * self.at_bound.iter().filter(|side| **side == 0).count() < self.n {
-            self.at_bound.fill(0);
-        }
-        self.list_constraints();
-    }
-
-    /// Lists free unknowns and working-set rows; sets the other unknowns to their bounds.
-    fn list_constraints(&mut self) {
-        self.free.clear();
-        self.free.extend((0..self.n).filter(|i| self.at_bound[*i] == 0));
-        for (i, side) in self.at_bound.iter().enumerate() {
-            self.step[i] = match side {
-                0 => 0.0,
-                -1 => self.lower_bounds[i],
-                _ => self.upper_bounds[i],
-            };
-        }
-        self.working_set.clear();
-        for row in 0..self.lower.len() {
-            if self.lower[row] == self.upper[row] || self.at_limit[row] != 0 {
-                self.working_set.push(row);
-            }
-        }
     }
 
     /// Writes `[M A^T -g; 0 0 c]` over free unknowns and working-set rows.
@@ -314,7 +247,7 @@ impl QuadraticProgram {
     }
 
     /// Solves for step and multipliers with the factors.
-    fn back_substitute(&mut self) {
+    pub(super) fn back_substitute(&mut self) {
         let (k, q) = (self.free.len(), self.working_set.len());
         let w = padded_width(k + q + 1);
         self.of_rows.clear();
@@ -341,75 +274,6 @@ impl QuadraticProgram {
         let schur = self.factor.get(k * w + k..).unwrap_or_default();
         solve_upper_transposed(schur, w, &mut self.of_rows);
         solve_upper(schur, w, &mut self.of_rows);
-    }
-
-    /// Changes the working set and the unknowns at bounds; returns whether anything changed.
-    fn change_working_set(&mut self) -> bool {
-        let left = self.leave_bounds();
-        let joined = self.join_bounds();
-        self.change_rows() || left || joined
-    }
-
-    /// Frees unknowns whose bound has a multiplier of the wrong sign.
-    fn leave_bounds(&mut self) -> bool {
-        let n = self.n;
-        let mut changed = false;
-        for i in 0..n {
-            if self.at_bound[i] == 0 {
-                continue;
-            }
-            let above: f64 = (0..i).map(|j| self.matrix[j * n + i] * self.step[j]).sum();
-            let mut multiplier = self.gradient[i] + above + dot(&self.matrix[i * n + i..(i + 1) * n], &self.step[i..]);
-            for &row in &self.working_set {
-                multiplier += self.multipliers[row] * self.rows[row * n + i];
-            }
-            if multiplier * f64::from(self.at_bound[i]) > LEAVING_MULTIPLIER * self.gradient[i].abs() {
-                self.at_bound[i] = 0;
-                changed = true;
-            }
-        }
-        changed
-    }
-
-    /// Holds the unknowns at the bounds that they violate most.
-    fn join_bounds(&mut self) -> bool {
-        let violation = |i: usize| (self.lower_bounds[i] - self.step[i]).max(self.step[i] - self.upper_bounds[i]);
-        let worst = self.free.iter().fold(0.0, |worst: f64, i| worst.max(violation(*i)));
-        if worst <= QP_ZERO {
-            return false;
-        }
-        let mut changed = false;
-        for &i in &self.free {
-            let violation = (self.lower_bounds[i] - self.step[i]).max(self.step[i] - self.upper_bounds[i]);
-            if violation >= JOINING_SHARE * worst {
-                self.at_bound[i] = if self.step[i] < self.lower_bounds[i] { -1 } else { 1 };
-                changed = true;
-            }
-        }
-        changed
-    }
-
-    /// Lets rows leave whose multiplier has the wrong sign, and violated rows join.
-    fn change_rows(&mut self) -> bool {
-        let n = self.n;
-        let mut changed = false;
-        for row in 0..self.lower.len() {
-            if self.lower[row] == self.upper[row] {
-                continue;
-            }
-            if self.at_limit[row] != 0 {
-                if self.multipliers[row] * f64::from(self.at_limit[row]) < 0.0 {
-                    self.at_limit[row] = 0;
-                    changed = true;
-                }
-                continue;
-            }
-            let value = dot(&self.rows[row * n..(row + 1) * n], &self.step);
-            let side = i8::from(value > self.upper[row] + QP_ZERO) - i8::from(value < self.lower[row] - QP_ZERO);
-            changed |= side != 0;
-            self.at_limit[row] = side;
-        }
-        changed
     }
 }
 
