@@ -66,6 +66,8 @@ pub(crate) struct BasinHopping {
     lowest: Candidate,
     nearest: Posture,
     hop: Hop,
+    /// Steps of all descents so far.
+    steps: usize,
 }
 
 /// A posture with its forces, and the multipliers of the constraints.
@@ -91,6 +93,7 @@ impl BasinHopping {
             lowest: candidate.clone(),
             nearest: model.default_posture(),
             hop: Hop { perturbed: candidate, perturbation: vec![] },
+            steps: 0,
         }
     }
 
@@ -106,12 +109,14 @@ impl BasinHopping {
         if problem.contact.supports().is_empty() {
             let smaller = reduced.take().filter(|reduced| reduced.model.rates().len() < problem.model.rates().len());
             if let Some(reduced) = smaller {
-                return Self::new(&reduced.model).minimise(&reduced.problem(problem), posture, count);
+                let mut hopping = Self::new(&reduced.model);
+                let minimum = hopping.minimise(&reduced.problem(problem), posture, count);
+                self.steps += hopping.steps;
+                return minimum;
             }
         }
-        let Some((nearest, mut steps)) = self.descend_to_nearest(problem, reduced.as_ref(), posture)? else {
-            return Ok(None);
-        };
+        let before = self.steps;
+        let Some(nearest) = self.descend_to_nearest(problem, reduced.as_ref(), posture)? else { return Ok(None) };
         let (sqp, lowest) = (&mut self.sqp, &mut self.lowest);
         if reduced.is_some() {
             reduced = ReducedProblem::of(problem, &lowest.posture)?; // fixed joints may have moved
@@ -119,25 +124,25 @@ impl BasinHopping {
         if let Some(reduced) = &reduced {
             let mut upper = Candidate { forces: vec![], ..lowest.clone() };
             let mut sqp = Sqp::new(&reduced.model);
-            steps += self.hop.search(&reduced.problem(problem), &mut sqp, &mut upper, count)?;
+            self.steps += self.hop.search(&reduced.problem(problem), &mut sqp, &mut upper, count)?;
             lowest.posture = upper.posture;
         } else {
-            steps += self.hop.search(problem, sqp, lowest, count)?;
+            self.steps += self.hop.search(problem, sqp, lowest, count)?;
         }
         let mut last = sqp.descend(problem, &lowest.posture, &lowest.forces, &lowest.multipliers, &FINAL)?;
-        steps += last.steps;
+        self.steps += last.steps;
         let moved = lowest.posture != self.nearest;
         if reduced.is_some() && moved && (last.violation > SEARCH_VIOLATION || last.objective > nearest.objective) {
             // The gain of the reduced problem costs the rest of the body more.
             last = sqp.descend(problem, &self.nearest, &lowest.forces, &lowest.multipliers, &FINAL)?;
-            steps += last.steps;
+            self.steps += last.steps;
         }
         if last.violation > SEARCH_VIOLATION {
             return Ok(None);
         }
         posture.values_mut().copy_from_slice(sqp.iterate.posture.values());
         let converged = last.converged && last.violation <= FINAL_VIOLATION;
-        Ok(Some(LocalMinimum { steps, converged, ..last }))
+        Ok(Some(LocalMinimum { steps: self.steps - before, converged, ..last }))
     }
 
     /// The errors of the levels above effort in `posture`, as [`EffortProblem::shortfall`].
@@ -150,50 +155,56 @@ impl BasinHopping {
         Ok(self.sqp.iterate.shortfall(problem))
     }
 
-    /// Descends from `posture` to the nearest local minimum, in the reduced problem first; returns it and the number of steps.
+    /// Steps of all descents so far, also of those that ended nowhere.
+    pub(crate) fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Descends from `posture` to the nearest local minimum, in the reduced problem first.
     fn descend_to_nearest(
         &mut self,
         problem: &EffortProblem<'_>,
         reduced: Option<&ReducedProblem>,
         posture: &Posture,
-    ) -> Result<Option<(LocalMinimum, usize)>, JointTorquesError> {
+    ) -> Result<Option<LocalMinimum>, JointTorquesError> {
         let (sqp, lowest) = (&mut self.sqp, &mut self.lowest);
         lowest.forces.clear();
         lowest.forces.extend_from_slice(problem.contact.forces());
         lowest.posture.values_mut().copy_from_slice(posture.values());
-        let mut steps = 0;
         if let Some(reduced) = reduced {
             let mut sqp = Sqp::new(&reduced.model);
             let end = sqp.descend(&reduced.problem(problem), posture, &[], &[], &TO_NEAREST)?;
-            steps += end.steps;
+            self.steps += end.steps;
             if end.violation <= SEARCH_VIOLATION {
                 lowest.keep_posture(&sqp);
             }
         }
         let mut nearest = sqp.descend(problem, &lowest.posture, &lowest.forces, &[], &TO_NEAREST)?;
-        steps += nearest.steps;
+        self.steps += nearest.steps;
         if nearest.violation > SEARCH_VIOLATION {
             nearest = sqp.descend(problem, &lowest.posture, &lowest.forces, &[], &RETRY)?;
-            steps += nearest.steps;
+            self.steps += nearest.steps;
         }
         if nearest.violation > SEARCH_VIOLATION {
             return Ok(None);
         }
         lowest.keep(sqp);
         self.nearest.values_mut().copy_from_slice(lowest.posture.values());
-        Ok(Some((nearest, steps)))
+        Ok(Some(nearest))
     }
 
-    /// Moves `posture` near its local minimum, or leaves it where it is if constraints are violated there; returns the number of steps.
+    /// Moves `posture` near its local minimum, or leaves it where it is if constraints are violated there; returns whether it did.
     pub(crate) fn near_minimum(
         &mut self,
         problem: &EffortProblem<'_>,
         posture: &mut Posture,
-    ) -> Result<usize, JointTorquesError> {
+    ) -> Result<bool, JointTorquesError> {
         let reduced = ReducedProblem::of(problem, posture)?;
-        let Some((_, steps)) = self.descend_to_nearest(problem, reduced.as_ref(), posture)? else { return Ok(0) };
-        posture.values_mut().copy_from_slice(self.lowest.posture.values());
-        Ok(steps)
+        let found = self.descend_to_nearest(problem, reduced.as_ref(), posture)?.is_some();
+        if found {
+            posture.values_mut().copy_from_slice(self.lowest.posture.values());
+        }
+        Ok(found)
     }
 
     /// Moves `posture` to its own local minimum, and returns whether it did: not if a coordinate would change by more than
@@ -208,6 +219,7 @@ impl BasinHopping {
         forces.clear();
         forces.extend_from_slice(problem.contact.forces());
         let minimum = self.sqp.descend(problem, posture, forces, &[], &AT_REST)?;
+        self.steps += minimum.steps;
         let end = &self.sqp.iterate.posture;
         let near = end.values().iter().zip(posture.values()).all(|(a, b)| (a - b).abs() <= most);
         let reached = minimum.converged && minimum.violation <= FINAL_VIOLATION && near;

@@ -12,8 +12,8 @@
 
 use super::dual_active_set::DualActiveSet;
 use super::tolerances::{
-    DIAGONAL_SHARE, FIRST_REGULARISATION, LARGEST_REGULARISATION, QP_ZERO, REGULARISATION_FACTOR, WORKING_SET_WEIGHT,
-    ZERO_ROW,
+    DIAGONAL_SHARE, FIRST_REGULARISATION, FORCES_SHARE, LARGEST_REGULARISATION, QP_ZERO, REGULARISATION_FACTOR,
+    WORKING_SET_WEIGHT, ZERO_ROW,
 };
 use hierarchical_least_squares::linalg::{
     add_outer_products, add_scaled, add_symmetric_column, block_start, blocked_cholesky, dot, padded_width,
@@ -36,7 +36,7 @@ pub(crate) struct QuadraticProgram {
     /// Bounds of each unknown.
     pub(crate) lower_bounds: Vec<f64>,
     pub(crate) upper_bounds: Vec<f64>,
-    /// Number of rates: the first unknowns, which are regularised; the others get [`DIAGONAL_SHARE`] only.
+    /// Number of rates: the first unknowns. The others are forces, which are regularised by [`FORCES_SHARE`] as much.
     pub(crate) rates: usize,
     /// Diagonal entry that one unit of regularisation adds.
     pub(crate) unit: f64,
@@ -229,7 +229,7 @@ impl QuadraticProgram {
             let more = if i < self.rates {
                 regularisation * self.unit + DIAGONAL_SHARE * rates
             } else {
-                DIAGONAL_SHARE * forces
+                (FORCES_SHARE * regularisation + DIAGONAL_SHARE) * forces
             };
             self.factor[a * w + a] += more;
         }
@@ -404,7 +404,7 @@ mod tests {
         }
     }
 
-    /// How random programs are solved.
+    /// A method that solves random programs.
     #[derive(Clone, Copy, Debug, PartialEq)]
     enum By {
         ChangesOfMany,

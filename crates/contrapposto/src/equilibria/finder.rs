@@ -100,7 +100,7 @@ impl<'a> Finder<'a> {
 
     /// Whether no further start may be begun.
     fn is_spent(&mut self, stage: Stage) -> bool {
-        let spent = self.starts > 0 && self.steps.work() >= self.most_work(stage);
+        let spent = self.starts > 0 && self.steps.work >= self.most_work(stage);
         self.cut |= spent;
         spent
     }
@@ -236,7 +236,7 @@ impl<'a> Finder<'a> {
             return starts.iter().map(|_| None).collect();
         }
         let (solvers, limbs, nothing_yet) = (&self.solvers, &self.limbs, self.starts == 0);
-        let (work, most) = (AtomicUsize::new(self.steps.work()), self.most_work(first.stage));
+        let (work, most) = (AtomicUsize::new(self.steps.work), self.most_work(first.stage));
         let solve = |solvers: &mut Solvers<'_>, start: &Start| {
             let is_spent = work.load(Ordering::Relaxed) >= most && !(nothing_yet && std::ptr::eq(start, first));
             (!is_spent).then(|| {
@@ -363,7 +363,7 @@ impl<'a> Finder<'a> {
             postures.push(RelaxedPosture { mirrored: way.mirrored, ..posture });
         }
         let (starts, fell, steps, work, cut) =
-            (self.starts, self.fell.len(), self.steps.steps, self.steps.work(), self.cut);
+            (self.starts, self.fell.len(), self.steps.steps, self.steps.work, self.cut);
         let minima = self.minima;
         Ok(Equilibria { postures, minima, starts, fell, yielded, alike: ways.alike + raised, steps, work, cut })
     }

@@ -108,7 +108,7 @@ pub struct Equilibria {
     pub alike: usize,
     /// Steps of all starts together.
     pub steps: usize,
-    /// Work of these steps: their number and the changes of their working sets ([`Step::work`](crate::posture_solver::Step::work)).
+    /// Work of these steps ([`Engine::work`](crate::posture_solver::Engine::work)).
     pub work: usize,
     /// The search ended at [`Search::most_work`](super::Search::most_work), not because all starts were tried.
     pub cut: bool,

@@ -60,23 +60,17 @@ pub(super) enum Way {
     Hanging,
 }
 
-/// Steps of solves, and their work beyond the steps.
+/// Steps of solves, and their work ([`Engine::work`]).
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Steps {
     pub(super) steps: usize,
-    pub(super) changes: usize,
-}
-
-impl Steps {
-    pub(super) fn work(self) -> usize {
-        self.steps + self.changes
-    }
+    pub(super) work: usize,
 }
 
 impl std::ops::AddAssign for Steps {
     fn add_assign(&mut self, other: Self) {
         self.steps += other.steps;
-        self.changes += other.changes;
+        self.work += other.work;
     }
 }
 
@@ -105,7 +99,7 @@ pub(super) enum Outcome {
 
 impl Attempt {
     pub(super) fn work(&self) -> usize {
-        self.before.work() + self.solved.as_ref().map_or(0, |solved| solved.steps.work())
+        self.before.work + self.solved.as_ref().map_or(0, |solved| solved.steps.work)
     }
 }
 
@@ -194,7 +188,11 @@ impl<'a> Solvers<'a> {
         if start.most_effort == f64::INFINITY {
             return Some(from);
         }
-        let near = self.engine(Stage::Nearest).near_minimum(&from).ok()?;
+        let engine = self.engine(Stage::Nearest);
+        let before = engine.work();
+        let near = engine.near_minimum(&from);
+        steps.work += engine.work() - before;
+        let near = near.ok()?;
         steps.steps += near.steps;
         (near.effort <= start.most_effort).then_some(near.posture)
     }
@@ -203,11 +201,12 @@ impl<'a> Solvers<'a> {
     fn solve(&mut self, stage: Stage, from: &Posture, limbs: &LimbsWithoutTask) -> Solved {
         let (search, slot) = (self.search, self.slot);
         let engine = self.engine(stage);
-        let mut steps = Steps::default();
+        let before = engine.work();
         let solved = match stage {
             Stage::Nearest => engine.near_minimum(from),
-            _ => engine.solve_watched(from, |step, _| steps.changes += step.work() - 1),
+            _ => engine.solve(from),
         };
+        let mut steps = Steps { steps: 0, work: engine.work() - before };
         let mut relaxed = match solved {
             Ok(relaxed) => relaxed,
             Err(error) => return Solved { steps, outcome: Outcome::Refused(error) },
@@ -255,13 +254,15 @@ impl<'a> Solvers<'a> {
         self.approach.levels_mut()[self.slot].clone_from(below);
         let mut posture = from.clone();
         self.approach.restart();
+        let before = self.approach.work();
         for _ in 0..APPROACH_STEPS {
             steps.steps += 1;
             match self.approach.step(&mut posture) {
-                Ok(step) if step.largest > APPROACH_TOLERANCE => steps.changes += step.work() - 1,
+                Ok(step) if step.largest > APPROACH_TOLERANCE => {}
                 _ => break,
             }
         }
+        steps.work += self.approach.work() - before;
         let distance = self.approach.evaluate(&posture).map_or(f64::INFINITY, |()| self.approach.error(self.slot));
         self.approach.levels_mut()[self.slot] = PriorityLevel::default();
         (distance, posture)

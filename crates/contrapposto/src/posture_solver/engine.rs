@@ -15,7 +15,7 @@ use super::error::EngineError;
 use super::iterate::Iterate;
 use super::linearisation::Linearisation;
 use super::merit_rule::MeritRule;
-use super::options::{Options, Reason, Step};
+use super::options::{Options, Reason, Step, WORK_OF_DESCENT_STEP};
 use super::priority_rule::PriorityRule;
 use super::report::{LevelError, SolvedPosture};
 use super::settings::Settings;
@@ -46,6 +46,8 @@ pub struct Engine<'a> {
     pub(super) part: Vec<f64>,
     slope: SlopeAlongMotion,
     pub(super) basin_hopping: BasinHopping,
+    /// Work of the steps so far, without descents.
+    work: usize,
 }
 
 impl<'a> Engine<'a> {
@@ -97,6 +99,7 @@ impl<'a> Engine<'a> {
             part: vec![0.0; settings.model.rates().len()],
             slope: SlopeAlongMotion::new(&settings, &contact),
             basin_hopping: BasinHopping::new(&settings.model),
+            work: 0,
             iterate: Iterate::new(&settings.model, contact),
             settings,
         }
@@ -222,6 +225,7 @@ impl<'a> Engine<'a> {
         posture.displace(&self.settings.model, change);
         self.settings.keep_ranges(posture);
         let step = Step { largest, rejected_previous, status, changes: self.solver.changes() };
+        self.work += step.work();
         self.rule.finish(&self.settings, &mut self.iterate, &self.solver, posture, &step)?;
         Ok(step)
     }
@@ -246,6 +250,12 @@ impl<'a> Engine<'a> {
         self.linearisation.write(&self.settings, &self.iterate);
         self.rule.record(&self.settings, &self.linearisation);
         Ok(())
+    }
+
+    /// Work of all steps so far, [`Step::work`], and of descents to local minima of effort: a measure of the time that they took, which is the same
+    /// on every machine.
+    pub fn work(&self) -> usize {
+        self.work + WORK_OF_DESCENT_STEP * self.basin_hopping.steps()
     }
 
     /// Replaces [`Options::max_step`], rad or m.

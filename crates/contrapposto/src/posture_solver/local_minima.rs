@@ -127,24 +127,25 @@ impl Engine<'_> {
         let (mut posture, mut steps) = (start.clone(), 0);
         if self.settings.options.local_minima > 0 && self.settings.can_descend() {
             let (shortfall, made) = self.shortfall_out_of_reach(&mut posture)?;
-            let mut descended = self.descend_near(&mut posture, shortfall.as_deref().unwrap_or_default())?;
-            if descended == 0
+            let before = self.basin_hopping.steps();
+            let descended = self.descend_near(&mut posture, shortfall.as_deref().unwrap_or_default())?;
+            if !descended
                 && shortfall.is_none()
                 && let Some(shortfall) = self.shortfall(&posture)?
             {
-                descended = self.descend_near(&mut posture, &shortfall)?;
+                self.descend_near(&mut posture, &shortfall)?;
             }
-            steps = made + descended;
+            steps = made + self.basin_hopping.steps() - before;
             self.settings.keep_ranges(&mut posture);
         }
         self.evaluate(&posture)?;
         self.describe(posture, false, steps)
     }
 
-    /// Moves `posture` near its local minimum; returns the number of steps, 0 where the descent leaves supports or levels.
-    fn descend_near(&mut self, posture: &mut Posture, shortfall: &[f64]) -> Result<usize, JointTorquesError> {
+    /// Moves `posture` near its local minimum; returns whether it did: not where the descent leaves supports or levels.
+    fn descend_near(&mut self, posture: &mut Posture, shortfall: &[f64]) -> Result<bool, JointTorquesError> {
         let problem = self.settings.effort_problem(&self.iterate.contact, Rates::Free);
         let problem = problem.map(|problem| EffortProblem { shortfall, ..problem });
-        problem.map_or(Ok(0), |problem| self.basin_hopping.near_minimum(&problem, posture))
+        problem.map_or(Ok(false), |problem| self.basin_hopping.near_minimum(&problem, posture))
     }
 }

@@ -59,6 +59,10 @@ pub struct Step {
 /// Changes of a working set that take as long as the rest of a step (fitted to five searches of whole bodies: 0.1 ms and 0.3 ms).
 const CHANGES_OF_A_STEP: usize = 3;
 
+/// Work of a step of a descent to a local minimum (fitted to `relax` of four scenarios: it takes 2.3 to 2.8 times as long as a unit of work of the
+/// other steps).
+pub(super) const WORK_OF_DESCENT_STEP: usize = 3;
+
 impl Step {
     /// A measure of the time that the step took, which is the same on every machine: 1, and 1 for every three changes of the working set.
     pub fn work(&self) -> usize {
