@@ -252,10 +252,10 @@ fn a_target_195_metres_up_is_not_reached_by_its_distance_from_the_hand() {
 
 #[test]
 fn a_run_whose_nearest_posture_falls_begins_in_one_that_stands_and_says_who_is_too_weak() {
-    // Both hands hold 20 kg at shin height with a bent back; the posture nearest to the start falls forward.
+    // Both hands hold 25 kg at shin height with a bent back; the posture nearest to the start falls forward.
     let text = r#"
 format = 1
-title = "40 kg at shin height"
+title = "50 kg at shin height"
 [model]
 adult = { sex = "male", stature_m = 1.75, mass_kg = 75 }
 [posture]
@@ -277,10 +277,10 @@ segment = "calcn_r"
 segment = "calcn_l"
 [[load]]
 segment = "hand_r"
-mass_kg = 20
+mass_kg = 25
 [[load]]
 segment = "hand_l"
-mass_kg = 20
+mass_kg = 25
 [[task]]
 kind = "point"
 segment = "hand_r"
@@ -312,8 +312,8 @@ duration_s = 1
         let hand = model.segment(name).unwrap();
         kinematics.station(model, hand, model.segments()[hand].center_of_mass)
     };
-    let held = 20.0 * (hand("hand_r") + hand("hand_l"));
-    let together = (model.mass() * kinematics.center_of_mass(model).unwrap() + held) / (model.mass() + 40.0);
+    let held = 25.0 * (hand("hand_r") + hand("hand_l"));
+    let together = (model.mass() * kinematics.center_of_mass(model).unwrap() + held) / (model.mass() + 50.0);
     let corners = scenario.supports.iter().flat_map(|support| support.corners.iter().map(|c| (support.segment, *c)));
     let xs: Vec<f64> = corners.map(|(segment, corner)| kinematics.station(model, segment, corner).x).collect();
     let (back, front) = xs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));

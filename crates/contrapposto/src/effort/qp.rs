@@ -487,6 +487,19 @@ mod tests {
         assert!(longer > 100, "{longer}");
     }
 
+    /// A rate and two forces. The second one has no curvature of its own, as forces that cancel each other within a support, and a mixed part with
+    /// the rate.
+    #[test]
+    fn a_force_without_curvature_needs_little_regularisation() {
+        let mut program = QuadraticProgram { n: 3, rates: 1, unit: 1.0, ..QuadraticProgram::default() };
+        program.matrix = vec![1.0, 0.0, 0.02, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+        program.gradient = vec![1.0, 0.0, 0.0];
+        program.lower_bounds = vec![-10.0; 3];
+        program.upper_bounds = vec![10.0; 3];
+        let needed = program.solve(0.0).unwrap();
+        assert!(needed > 0.0 && needed < 1.0, "{needed}");
+    }
+
     #[test]
     fn random_programs_have_the_objective_of_an_interior_point_method() {
         for by in [By::ChangesOfMany, By::Dual] {
