@@ -74,6 +74,11 @@ impl DualActiveSet {
         }
     }
 
+    /// `d` of the minimum.
+    pub(super) fn solution(&self) -> &[f64] {
+        &self.d
+    }
+
     /// Writes the sides of bounds and rows of the working set.
     pub(super) fn write(&self, at_bound: &mut [i8], at_limit: &mut [i8]) {
         at_bound.fill(0);

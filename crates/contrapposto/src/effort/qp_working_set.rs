@@ -1,52 +1,96 @@
 //! Changes the working set of a quadratic program until its solution is found.
 
-use hierarchical_least_squares::linalg::{dot, padded_width};
+use hierarchical_least_squares::linalg::{dot, norm, padded_width};
 
 use super::dual_active_set::Constraints;
 use super::qp::QuadraticProgram;
-use super::tolerances::{JOINING_SHARE, LEAVING_MULTIPLIER, QP_ZERO, WORKING_SET_CHANGES};
+use super::tolerances::{JOINING_SHARE, LEAVING_MULTIPLIER, QP_VIOLATION, QP_ZERO, WORKING_SET_CHANGES};
 
 impl QuadraticProgram {
-    /// Solves, and changes many constraints at once, until nothing changes; `false` after [`WORKING_SET_CHANGES`].
-    pub(super) fn change_many(&mut self, regularisation: &mut f64) -> Option<bool> {
+    /// Solves, and changes many constraints at once, until nothing changes; returns the regularisation that the last solution needed, `None` after
+    /// [`WORKING_SET_CHANGES`].
+    pub(super) fn change_many(&mut self, regularisation: f64) -> Option<f64> {
         for _ in 0..WORKING_SET_CHANGES {
             self.list_working_set();
-            self.factorise_regularised(regularisation)?;
+            let needed = self.factorise_regularised(regularisation)?;
             self.back_substitute();
             if !self.change_working_set() {
-                return Some(true);
+                return Some(needed);
             }
         }
-        Some(false)
+        None
     }
 
-    /// Solves with the working set that a dual method finds, or, where the squares of its inequalities do with less regularisation than the
-    /// equations alone, with the one that few changes of it lead to.
-    pub(super) fn find_working_set(&mut self, regularisation: &mut f64) -> Option<()> {
-        let (n, mut less) = (self.n, *regularisation);
-        self.at_bound.fill(0);
+    /// Solves with the working set that a dual method finds; returns the regularisation that was needed.
+    ///
+    /// Where the squares of the equations alone need more of it, those of the bounds and limits that the solution meets are added, too, and the program
+    /// is solved once more with less. If that meets all of them, they change nothing in it; if not, those that it leaves are taken away again.
+    pub(super) fn find_working_set(&mut self, regularisation: f64) -> Option<f64> {
+        self.stiffen(false);
+        let alone = self.find_by_dual(regularisation)?;
+        let mut needed = alone;
+        if regularisation < alone {
+            needed = match self.find_with_less(regularisation, alone) {
+                Some(less) => less,
+                None => {
+                    self.stiffen(false);
+                    self.find_by_dual(alone)?
+                }
+            };
+        }
+        self.list_constraints();
+        needed = self.factorise_regularised(needed)?;
+        self.back_substitute();
+        Some(needed)
+    }
+
+    /// Finds the working set of `M` with the squares that were added; returns the regularisation that was needed.
+    fn find_by_dual(&mut self, regularisation: f64) -> Option<f64> {
+        let n = self.n;
         self.working_set.clear();
         self.free.clear();
         self.free.extend(0..n);
-        self.factorise_regularised(regularisation)?;
+        self.at_bound.fill(0);
+        let needed = self.factorise_regularised(regularisation)?;
         let width = padded_width(n + 1);
         self.of_unknowns.clear();
         self.of_unknowns.extend((0..n).map(|i| self.factor[i * width + n]));
         let Self { factor, rows, lower, upper, lower_bounds, upper_bounds, dual, .. } = self;
         dual.solve(&Constraints { factor, width, rows, lower, upper, lower_bounds, upper_bounds }, &self.of_unknowns);
         self.dual.write(&mut self.at_bound, &mut self.at_limit);
-        if less < *regularisation {
-            let found = self.change_many(&mut less) == Some(true);
-            if found && less < *regularisation {
-                *regularisation = less;
-                return Some(());
+        Some(needed)
+    }
+
+    /// Finds the working set with less regularisation than `most`, from `least` on, where there is one; returns it.
+    fn find_with_less(&mut self, least: f64, most: f64) -> Option<f64> {
+        for _ in 0..WORKING_SET_CHANGES {
+            self.known_bound.clone_from(&self.at_bound);
+            self.known_limit.clone_from(&self.at_limit);
+            self.stiffen(true);
+            let needed = self.find_by_dual(least).filter(|needed| *needed < most)?;
+            if self.meets_known() {
+                return Some(needed);
+            }
+            let bounds = self.at_bound.iter_mut().zip(&self.known_bound);
+            for (side, known) in bounds.chain(self.at_limit.iter_mut().zip(&self.known_limit)) {
+                *side = if side == known { *known } else { 0 };
             }
         }
-        self.dual.write(&mut self.at_bound, &mut self.at_limit);
-        self.list_constraints();
-        self.factorise_regularised(regularisation)?;
-        self.back_substitute();
-        Some(())
+        None
+    }
+
+    /// Whether the solution of the dual method meets all bounds and limits whose squares were added.
+    fn meets_known(&self) -> bool {
+        let d = self.dual.solution();
+        let limit = |side: i8, lower: f64, upper: f64| if side > 0 { upper } else { lower };
+        let mut bounds = self.known_bound.iter().enumerate().filter(|(_, side)| **side != 0);
+        let mut rows = self.known_limit.iter().enumerate().filter(|(_, side)| **side != 0);
+        bounds.all(|(i, side)| (d[i] - limit(*side, self.lower_bounds[i], self.upper_bounds[i])).abs() <= QP_VIOLATION)
+            && rows.all(|(r, side)| {
+                let row = &self.rows[r * self.n..(r + 1) * self.n];
+                let missing = dot(row, d) - limit(*side, self.lower[r], self.upper[r]);
+                missing.abs() <= QP_VIOLATION * norm(row)
+            })
     }
 
     /// Lists free unknowns and working-set rows. Where most unknowns lie at bounds all are freed: changes of many at once seldom find such a

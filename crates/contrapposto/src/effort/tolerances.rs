@@ -21,7 +21,8 @@ pub(super) const DIAGONAL_SHARE: f64 = 1e-10;
 /// Share of the largest diagonal entry among the forces that a unit of regularisation adds to the diagonal of each force. Forces that cancel each
 /// other within a support have no curvature of their own: without this a mixed part of a thousandth of the matrix needs a regularisation of thousands.
 pub(super) const FORCES_SHARE: f64 = 1e-3;
-/// Changes of the working set, of many constraints at once, after which the dual method finds it.
+/// Changes of the working set, of many constraints at once, after which the dual method finds it. Also the number of its attempts with the
+/// squares of bounds and limits.
 pub(super) const WORKING_SET_CHANGES: usize = 3;
 /// Violation of a row or bound from which it joins the working set of the dual method, beside the length of the row.
 pub(super) const QP_VIOLATION: f64 = 1e-10;
