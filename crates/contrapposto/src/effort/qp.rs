@@ -8,7 +8,8 @@
 //!
 //! From one step of a descent to the next few constraints change, and one or two changes of the working set, each of many constraints at once,
 //! find the solution (`qp_working_set.rs`). Where three do not, as such changes may follow each other without end, a dual method
-//! (`dual_active_set.rs`) finds the working set of `M` with the squares of equations alone, which is strictly convex.
+//! (`dual_active_set.rs`) finds the working set of `M` with the squares of the equations, or of those and of limits that its solution is known to meet: a
+//! strictly convex program.
 
 use super::dual_active_set::DualActiveSet;
 use super::tolerances::{
@@ -43,7 +44,7 @@ pub(crate) struct QuadraticProgram {
     /// `d` of the solution, and the multipliers of the rows.
     pub(crate) step: Vec<f64>,
     pub(crate) multipliers: Vec<f64>,
-    /// `H` with the squares of equations added, upper triangle; the weight of the square of each row; `g` less the equations'.
+    /// `H` with the squares added ([`QuadraticProgram::stiffen`]), upper triangle; the weight of the square of each row; `g` less the equations'.
     stiffened: Vec<f64>,
     weights: Vec<f64>,
     stiffened_gradient: Vec<f64>,

@@ -21,12 +21,12 @@ impl QuadraticProgram {
         None
     }
 
-    /// Solves with the working set that a dual method finds; returns the regularisation that was needed.
+    /// Solves with the working set that a dual method finds, where the squares of the equations alone were added; returns the regularisation that was
+    /// needed.
     ///
     /// Where the squares of the equations alone need more of it, those of the bounds and limits that the solution meets are added, too, and the program
     /// is solved once more with less. If that meets all of them, they change nothing in it; if not, those that it leaves are taken away again.
     pub(super) fn find_working_set(&mut self, regularisation: f64) -> Option<f64> {
-        self.stiffen(false);
         let alone = self.find_by_dual(regularisation)?;
         let mut needed = alone;
         if regularisation < alone {
@@ -73,7 +73,9 @@ impl QuadraticProgram {
             }
             let bounds = self.at_bound.iter_mut().zip(&self.known_bound);
             for (side, known) in bounds.chain(self.at_limit.iter_mut().zip(&self.known_limit)) {
-                *side = if side == known { *known } else { 0 };
+                if side != known {
+                    *side = 0;
+                }
             }
         }
         None
