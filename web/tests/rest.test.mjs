@@ -7,10 +7,10 @@ import { atRest, close, open, result, root, slide, useBrowser, withBody } from "
 
 useBrowser();
 
-const relaxed = () => `#scenario=${readFileSync(join(root, "scenarios", "stand-relaxed.toml")).toString("base64url")}`;
+const scenario = (name) => `#scenario=${readFileSync(join(root, "scenarios", `${name}.toml`)).toString("base64url")}`;
 
 test("ways to rest are searched for, the search can be stopped, a press goes to one of them and undo comes back", async (t) => {
-  const opened = await open(relaxed());
+  const opened = await open(scenario("stand-relaxed-feet-fixed"));
   const { page } = opened;
   await atRest(page);
   await page.click("#rest");
@@ -68,7 +68,7 @@ test("left and right are exchanged, with the weight; a reload keeps it", async (
 });
 
 test("a run is looked at as it was, and “now” returns; the picture stays where it is while time runs", async () => {
-  const opened = await open(relaxed());
+  const opened = await open(scenario("stand-relaxed"));
   const { page } = opened;
   await atRest(page);
   const place = () => page.evaluate(() => [document.querySelector("#canvas").getBoundingClientRect().top + scrollY, document.querySelector("#canvas").clientHeight]);

@@ -423,7 +423,7 @@ fn bones_of_the_skin_are_at_the_joint_centres_in_every_posture() {
 #[test]
 fn ways_to_rest_are_those_of_relax_and_one_goes_there_and_back() {
     let mut studio = Studio::new();
-    let scenario = scenario("stand-relaxed");
+    let scenario = scenario("stand-relaxed-feet-fixed");
     ask(&mut studio, json!({ "do": "open", "scenario": scenario }));
     let (mut told, mut last) = (0, 0);
     let answer = studio.call_watched(r#"{ "do": "relax" }"#, &mut |sought| {
@@ -435,7 +435,7 @@ fn ways_to_rest_are_those_of_relax_and_one_goes_there_and_back() {
     let ways = answer["ways"].as_array().unwrap();
     let efforts: Vec<f64> = ways.iter().map(|way| number(&way["effort"])).collect();
     // The same scenario, searched by the library as the program does.
-    let read = contrapposto_formats::read_relax("stand-relaxed.toml", scenario.as_bytes(), None).unwrap();
+    let read = contrapposto_formats::read_relax("stand-relaxed-feet-fixed.toml", scenario.as_bytes(), None).unwrap();
     let found = contrapposto::equilibria::equilibria(&read.search(), RelaxScenario::OPTIONS).unwrap();
     assert_eq!(efforts, found.postures.iter().map(|posture| posture.relaxed.effort).collect::<Vec<_>>());
     assert!(efforts.len() > 1 && efforts.is_sorted(), "{efforts:?}");

@@ -24,7 +24,7 @@ const ROUNDS: usize = 2;
 /// Most postures with a limb held up from which limbs are let hang.
 const HUNG: usize = 5;
 /// Most local minima from which lower ones are sought where all ways to stand are wanted, those of least effort. Assumed.
-const HOPPED_OF_ALL: usize = 8;
+const HOPPED_OF_ALL: usize = 3;
 /// Most local minima from which lower ones are sought where only the posture of least effort is wanted. Assumed.
 const HOPPED_TO_LEAST: usize = 5;
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to

@@ -24,7 +24,7 @@ pub(super) const SEARCH_BUDGET: usize = 200_000;
 /// Work that the searches of one time step, or of the start, may do together, with the ways that they plan: about 6 seconds on one core;
 /// twice as much for a start that misses a task. Searches for two feet that may be put elsewhere fit in; with a hand on a counter they end at it,
 /// after the step was found.
-pub(super) const SEARCH_BUDGET_OF_STEP: usize = 48_000;
+pub(super) const SEARCH_BUDGET_OF_STEP: usize = 36_000;
 /// A posture is worth a motion if its effort is less than this share of the present one.
 const WORTH_A_MOTION: f64 = 0.98;
 /// A task whose error is greater is out of reach, and a posture in which it is nearer by more is another one, m or rad. Assumed: a tenth of
