@@ -150,9 +150,9 @@ fn a_search_does_not_depend_on_the_number_of_threads() {
     }
 }
 
-/// The other steps of a solve count as their changes of the working set have it.
+/// Besides, changes of the dual method count. The other steps of a solve count as their changes of the working set have it.
 #[test]
-fn a_step_of_a_descent_counts_as_three_units_of_work() {
+fn a_step_of_a_descent_counts_as_two_units_of_work() {
     let standing = Standing::new(None, None);
     let mut engine = standing.engine(Options { local_minima: 1, ..OPTIONS });
     let (mut others, mut their_work) = (0, 0);
@@ -163,7 +163,8 @@ fn a_step_of_a_descent_counts_as_three_units_of_work() {
     let steps = solved.unwrap().steps;
     println!("{steps} steps, {others} of them in no descent, work {}", engine.work());
     assert!(steps > others + 10);
-    assert_eq!(engine.work(), their_work + 3 * (steps - others));
+    let least = their_work + 2 * (steps - others);
+    assert!((least..=least + least / 10).contains(&engine.work()), "{least}");
 }
 
 /// A search that may do little work ends after the start in which its budget is spent, says so, and finds the same each time.

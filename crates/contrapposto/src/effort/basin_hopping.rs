@@ -68,6 +68,8 @@ pub(crate) struct BasinHopping {
     hop: Hop,
     /// Steps of all descents so far.
     steps: usize,
+    /// Work of the descents of reduced problems so far.
+    work_reduced: usize,
 }
 
 /// A posture with its forces, and the multipliers of the constraints.
@@ -94,6 +96,7 @@ impl BasinHopping {
             nearest: model.default_posture(),
             hop: Hop { perturbed: candidate, perturbation: vec![] },
             steps: 0,
+            work_reduced: 0,
         }
     }
 
@@ -112,6 +115,7 @@ impl BasinHopping {
                 let mut hopping = Self::new(&reduced.model);
                 let minimum = hopping.minimise(&reduced.problem(problem), posture, count);
                 self.steps += hopping.steps;
+                self.work_reduced += hopping.work();
                 return minimum;
             }
         }
@@ -124,7 +128,9 @@ impl BasinHopping {
         if let Some(reduced) = &reduced {
             let mut upper = Candidate { forces: vec![], ..lowest.clone() };
             let mut sqp = Sqp::new(&reduced.model);
-            self.steps += self.hop.search(&reduced.problem(problem), &mut sqp, &mut upper, count)?;
+            let steps = self.hop.search(&reduced.problem(problem), &mut sqp, &mut upper, count);
+            self.work_reduced += sqp.work();
+            self.steps += steps?;
             lowest.posture = upper.posture;
         } else {
             self.steps += self.hop.search(problem, sqp, lowest, count)?;
@@ -160,6 +166,11 @@ impl BasinHopping {
         self.steps
     }
 
+    /// Work of all descents so far, in units of [`Engine::work`](crate::posture_solver::Engine::work).
+    pub(crate) fn work(&self) -> usize {
+        self.work_reduced + self.sqp.work()
+    }
+
     /// Descends from `posture` to the nearest local minimum, in the reduced problem first.
     fn descend_to_nearest(
         &mut self,
@@ -173,7 +184,9 @@ impl BasinHopping {
         lowest.posture.values_mut().copy_from_slice(posture.values());
         if let Some(reduced) = reduced {
             let mut sqp = Sqp::new(&reduced.model);
-            let end = sqp.descend(&reduced.problem(problem), posture, &[], &[], &TO_NEAREST)?;
+            let end = sqp.descend(&reduced.problem(problem), posture, &[], &[], &TO_NEAREST);
+            self.work_reduced += sqp.work();
+            let end = end?;
             self.steps += end.steps;
             if end.violation <= SEARCH_VIOLATION {
                 lowest.keep_posture(&sqp);

@@ -51,6 +51,10 @@ pub(super) struct DualActiveSet {
     outside: Vec<f64>,
     shares: Vec<f64>,
     slopes: Vec<f64>,
+    /// Changes of all solutions so far.
+    changes: usize,
+    /// Violation of the constraints that were left out, when they were, beside their lengths: the greatest.
+    left_out_by: f64,
 }
 
 impl DualActiveSet {
@@ -74,6 +78,16 @@ impl DualActiveSet {
         }
     }
 
+    /// Number of changes of the working set in all solutions so far.
+    pub(super) fn changes(&self) -> usize {
+        self.changes
+    }
+
+    /// Greatest violation, beside its length, of a constraint that contradicts those before it.
+    pub(super) fn left_out_by(&self) -> f64 {
+        self.left_out_by
+    }
+
     /// `d` of the minimum.
     pub(super) fn solution(&self) -> &[f64] {
         &self.d
@@ -93,6 +107,7 @@ impl DualActiveSet {
 
     fn begin(&mut self, program: &Constraints<'_>, w: &[f64]) {
         self.n = w.len();
+        self.left_out_by = 0.0;
         self.active.clear();
         self.multipliers.clear();
         self.basis.clear();
@@ -112,6 +127,7 @@ impl DualActiveSet {
                 return false;
             }
             *left -= 1;
+            self.changes += 1;
             let independent = self.project();
             let whole = match independent {
                 true => self.missing(program, joining) / dot(&self.outside, &self.outside),
@@ -121,7 +137,8 @@ impl DualActiveSet {
             let step = leaving.map_or(whole, |(share, _)| whole.min(share));
             if step == f64::INFINITY {
                 // The working set contradicts it.
-                self.lengths[joining.index] = 0.0;
+                let length = std::mem::take(&mut self.lengths[joining.index]);
+                self.left_out_by = self.left_out_by.max(self.missing(program, joining) / length);
                 return true;
             }
             if independent {

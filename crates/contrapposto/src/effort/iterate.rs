@@ -216,6 +216,37 @@ impl Iterate {
         }
         (0..program.rates).fold(0.0, |size: f64, i| size.max(program.matrix[i * n + i]))
     }
+
+    /// Moves posture and forces by `length` times the step. A coordinate does not leave its range: corrections do not know of it.
+    pub(super) fn displace(&mut self, problem: &EffortProblem<'_>, step: &[f64], length: f64, by_rate: &mut [f64]) {
+        by_rate.fill(0.0);
+        for (rate, d) in problem.free.iter().zip(step) {
+            by_rate[*rate] = length * d;
+        }
+        let outside = |posture: &Posture, rate: usize, change: f64| {
+            let c = problem.model.rates()[rate].coordinate?;
+            let ((lower, upper), after) = (problem.model.coordinates()[c].range, posture.values()[c]);
+            let before = after - change;
+            let kept = after.clamp(lower.min(before), upper.max(before));
+            (kept != after).then_some((c, kept))
+        };
+        self.posture.displace(problem.model, by_rate);
+        let mut left = false;
+        for rate in problem.free {
+            if let Some((c, kept)) = outside(&self.posture, *rate, by_rate[*rate]) {
+                self.posture.values_mut()[c] = kept;
+                left = true;
+            }
+        }
+        if left {
+            // Coordinates that follow others are set anew.
+            by_rate.fill(0.0);
+            self.posture.displace(problem.model, by_rate);
+        }
+        for (force, d) in self.forces.iter_mut().zip(&step[problem.free.len()..]) {
+            *force += length * d;
+        }
+    }
 }
 
 #[cfg(test)]

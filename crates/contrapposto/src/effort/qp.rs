@@ -13,8 +13,8 @@
 
 use super::dual_active_set::DualActiveSet;
 use super::tolerances::{
-    DIAGONAL_SHARE, FIRST_REGULARISATION, FORCES_SHARE, LARGEST_REGULARISATION, QP_ZERO, REGULARISATION_FACTOR,
-    WORKING_SET_WEIGHT, ZERO_ROW,
+    CONTRADICTION, DIAGONAL_SHARE, DUAL_CHANGES_OF_A_UNIT, FIRST_REGULARISATION, FORCES_SHARE, LARGEST_REGULARISATION,
+    QP_ZERO, REGULARISATION_FACTOR, WORK_OF_PROGRAM, WORKING_SET_WEIGHT, ZERO_ROW,
 };
 use hierarchical_least_squares::linalg::{
     add_outer_products, add_scaled, add_symmetric_column, block_start, blocked_cholesky, dot, padded_width,
@@ -63,6 +63,10 @@ pub(crate) struct QuadraticProgram {
     /// `H d`; during a solve `M d` of the unknowns at bounds.
     product: Vec<f64>,
     pub(super) dual: DualActiveSet,
+    /// Programs solved so far.
+    solved: usize,
+    /// Constraints of the last program contradict each other by more than [`CONTRADICTION`].
+    pub(crate) contradictory: bool,
     // Scratch.
     of_rows: Vec<f64>,
     pub(super) of_unknowns: Vec<f64>,
@@ -75,10 +79,17 @@ impl QuadraticProgram {
         self.at_limit.clear();
     }
 
+    /// Work of all programs solved so far, in units of [`Engine::work`](crate::posture_solver::Engine::work).
+    pub(crate) fn work(&self) -> usize {
+        WORK_OF_PROGRAM * self.solved + self.dual.changes() / DUAL_CHANGES_OF_A_UNIT
+    }
+
     /// Solves with at least this regularisation; returns the one that was needed. `None` if none up to
     /// [`LARGEST_REGULARISATION`] makes the matrix positive definite, or the solution is not finite.
     pub(crate) fn solve(&mut self, regularisation: f64) -> Option<f64> {
         let (n, m) = (self.n, self.lower.len());
+        self.solved += 1;
+        self.contradictory = false;
         self.at_bound.resize(n, 0);
         self.at_limit.resize(m, 0);
         self.step.resize(n, 0.0);
@@ -86,7 +97,11 @@ impl QuadraticProgram {
         self.stiffen(false);
         let regularisation = match self.change_many(regularisation) {
             Some(needed) => needed,
-            None => self.find_working_set(regularisation)?,
+            None => {
+                let needed = self.find_working_set(regularisation);
+                self.contradictory = self.dual.left_out_by() > CONTRADICTION;
+                needed?
+            }
         };
         for (d, (least, most)) in self.step.iter_mut().zip(self.lower_bounds.iter().zip(&self.upper_bounds)) {
             *d = d.clamp(*least, *most);
@@ -543,6 +558,31 @@ mod tests {
         program.upper_bounds = vec![f64::INFINITY; 3];
         let needed = program.solve(0.0).unwrap();
         assert!(needed > 0.0 && needed < 1.0, "{needed}");
+    }
+
+    /// Two limits that no step satisfies, and before that the same program without them. The changes that it takes to find that out count as work.
+    #[test]
+    fn programs_with_limits_that_contradict_each_other_are_told_from_those_without() {
+        let mut random = Pcg64Mcg::new(SEED.into());
+        let (mut told, mut work) = (0, 0);
+        for _ in 0..100 {
+            let mut program = random_program(&mut random, false);
+            program.solve(0.0).unwrap();
+            assert!(!program.contradictory);
+            let row: Vec<f64> = (0..program.n).map(|_| random.random_range(-1.0..1.0)).collect();
+            for (lower, upper) in [(1.0, f64::INFINITY), (f64::NEG_INFINITY, -1.0)] {
+                program.rows.extend_from_slice(&row);
+                program.lower.push(lower);
+                program.upper.push(upper);
+            }
+            let before = program.work();
+            if program.solve(0.0).is_some() {
+                told += usize::from(program.contradictory);
+                work += program.work() - before;
+            }
+        }
+        println!("seed {SEED}: {told} of 100 told, work {work}");
+        assert!(told > 95 && work > 100 * (WORK_OF_PROGRAM + 1), "{told} {work}");
     }
 
     #[test]

@@ -13,8 +13,8 @@ use super::iterate::Iterate;
 use super::problem::EffortProblem;
 use super::qp::QuadraticProgram;
 use super::tolerances::{
-    ACCEPTED_SHARE, FIRST_REGULARISATION, GOOD_AGREEMENT, LEAST_STEP, NO_REGULARISATION, PENALTY_DECAY, PENALTY_MARGIN,
-    PREDICTED_ROUNDING, RAISED_REGULARISATION, ROUNDING_SHARE, WORTH_CORRECTING,
+    ACCEPTED_SHARE, CONTRADICTIONS, FIRST_REGULARISATION, GOOD_AGREEMENT, LEAST_STEP, NO_REGULARISATION, PENALTY_DECAY,
+    PENALTY_MARGIN, PREDICTED_ROUNDING, RAISED_REGULARISATION, ROUNDING_SHARE, SEARCH_VIOLATION, WORTH_CORRECTING,
 };
 use crate::contact::bounds;
 use crate::joint_torques::JointTorquesError;
@@ -93,6 +93,8 @@ struct Control {
     extrapolation: f64,
     /// Steps in a row that predicted little decrease.
     small_gains: usize,
+    /// Contradictory programs in a row.
+    contradictions: usize,
 }
 
 impl Control {
@@ -104,6 +106,7 @@ impl Control {
             trust_radius: options.trust_radius,
             extrapolation: 1.0,
             small_gains: 0,
+            contradictions: 0,
         }
     }
 
@@ -185,6 +188,9 @@ impl Sqp {
             let share = self.corrected_share(options.feasibility_step);
             let second_order = steps > options.gauss_newton_steps;
             let Some(step) = self.solve_step(problem, share, second_order, &mut control) else { break };
+            if control.contradictions >= CONTRADICTIONS && self.iterate.violation() > SEARCH_VIOLATION {
+                break;
+            }
             if step.predicted <= 0.0 && step.largest > LEAST_STEP {
                 // The working set was wrong: an empty one and a shorter step.
                 self.program.forget();
@@ -225,6 +231,11 @@ impl Sqp {
             std::mem::swap(&mut self.iterate, &mut self.candidate);
         }
         Ok(())
+    }
+
+    /// Work of all descents so far ([`QuadraticProgram::work`]).
+    pub(crate) fn work(&self) -> usize {
+        self.program.work()
     }
 
     /// Evaluates the iterate at `start` and forgets earlier descents.
@@ -271,6 +282,7 @@ impl Sqp {
         self.write_bounds(problem);
         let program = &mut self.program;
         let regularisation = program.solve(control.regularisation)?;
+        control.contradictions = if program.contradictory { control.contradictions + 1 } else { 0 };
         let largest = program.step[..problem.free.len()].iter().fold(0.0, |most: f64, d| most.max(d.abs()));
         let multiplier = program.multipliers.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
         control.penalty = (PENALTY_DECAY * control.penalty).max(PENALTY_MARGIN * multiplier);
@@ -316,7 +328,7 @@ impl Sqp {
     fn move_candidate(&mut self, problem: &EffortProblem<'_>, length: f64) {
         self.candidate.posture.values_mut().copy_from_slice(self.iterate.posture.values());
         self.candidate.forces.copy_from_slice(&self.iterate.forces);
-        displace(&mut self.candidate, problem, &self.program.step, length, &mut self.by_rate);
+        self.candidate.displace(problem, &self.program.step, length, &mut self.by_rate);
     }
 
     /// Evaluates the candidate after the step, with a second-order correction where that lowers the merit; returns the merit.
@@ -341,7 +353,7 @@ impl Sqp {
         }
         self.correction.resize(program.n, 0.0);
         program.correct(excess, &mut self.correction);
-        displace(&mut self.candidate, problem, &self.correction, 1.0, &mut self.by_rate);
+        self.candidate.displace(problem, &self.correction, 1.0, &mut self.by_rate);
         let corrected = match self.candidate.evaluate(problem) {
             Ok(()) => self.candidate.objective + penalty * self.candidate.violation(),
             Err(_) => f64::INFINITY,
@@ -357,44 +369,13 @@ impl Sqp {
     }
 }
 
-/// Moves posture and forces by `length` times the step. A coordinate does not leave its range: corrections do not know of it.
-fn displace(iterate: &mut Iterate, problem: &EffortProblem<'_>, step: &[f64], length: f64, by_rate: &mut [f64]) {
-    by_rate.fill(0.0);
-    for (rate, d) in problem.free.iter().zip(step) {
-        by_rate[*rate] = length * d;
-    }
-    let outside = |posture: &Posture, rate: usize, change: f64| {
-        let c = problem.model.rates()[rate].coordinate?;
-        let ((lower, upper), after) = (problem.model.coordinates()[c].range, posture.values()[c]);
-        let before = after - change;
-        let kept = after.clamp(lower.min(before), upper.max(before));
-        (kept != after).then_some((c, kept))
-    };
-    iterate.posture.displace(problem.model, by_rate);
-    let mut left = false;
-    for rate in problem.free {
-        if let Some((c, kept)) = outside(&iterate.posture, *rate, by_rate[*rate]) {
-            iterate.posture.values_mut()[c] = kept;
-            left = true;
-        }
-    }
-    if left {
-        // Coordinates that follow others are set anew.
-        by_rate.fill(0.0);
-        iterate.posture.displace(problem.model, by_rate);
-    }
-    for (force, d) in iterate.forces.iter_mut().zip(&step[problem.free.len()..]) {
-        *force += length * d;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use rand::RngExt;
     use rand_pcg::Pcg64Mcg;
 
     use super::super::standing_adult::StandingAdult;
-    use super::{Control, SqpOptions, Step, displace};
+    use super::{Control, SqpOptions, Step};
 
     const SEED: u64 = 36;
 
@@ -404,7 +385,7 @@ mod tests {
         StandingAdult::new().each_posture(&mut Pcg64Mcg::new(SEED.into()), 20, |random, problem, iterate| {
             let step: Vec<f64> = (0..problem.unknowns()).map(|_| random.random_range(-4.0..4.0)).collect();
             let mut moved = iterate.clone();
-            displace(&mut moved, problem, &step, 1.0, &mut vec![0.0; problem.model.rates().len()]);
+            moved.displace(problem, &step, 1.0, &mut vec![0.0; problem.model.rates().len()]);
             for rate in problem.free {
                 let Some(c) = problem.model.rates()[*rate].coordinate else { continue };
                 let (value, (lower, upper)) = (moved.posture.values()[c], problem.model.coordinates()[c].range);

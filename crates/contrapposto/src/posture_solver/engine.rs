@@ -15,7 +15,7 @@ use super::error::EngineError;
 use super::iterate::Iterate;
 use super::linearisation::Linearisation;
 use super::merit_rule::MeritRule;
-use super::options::{Options, Reason, Step, WORK_OF_DESCENT_STEP};
+use super::options::{Options, Reason, Step};
 use super::priority_rule::PriorityRule;
 use super::report::{LevelError, SolvedPosture};
 use super::settings::Settings;
@@ -255,7 +255,7 @@ impl<'a> Engine<'a> {
     /// Work of all steps so far, [`Step::work`], and of descents to local minima of effort: a measure of the time that they took, which is the same
     /// on every machine.
     pub fn work(&self) -> usize {
-        self.work + WORK_OF_DESCENT_STEP * self.basin_hopping.steps()
+        self.work + self.basin_hopping.work()
     }
 
     /// Replaces [`Options::max_step`], rad or m.
