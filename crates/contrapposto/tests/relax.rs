@@ -178,8 +178,8 @@ fn a_search_with_little_work_ends_early_says_so_and_finds_the_same_again() {
     println!("work {} of {}, starts {} of {}", found.work, whole.work, found.starts, whole.starts);
     assert!(found.cut && !whole.cut);
     assert!(found.starts < whole.starts && found.work < whole.work);
-    // One start may go on when the budget ends.
-    assert!(found.work < 2 * MOST_WORK + OPTIONS.max_steps, "{}", found.work);
+    // One start may go on when the budget ends, each of its steps at some 8 units.
+    assert!(found.work < 2 * MOST_WORK + 8 * OPTIONS.max_steps, "{}", found.work);
     assert!(!found.postures.is_empty());
     assert_eq!(found, find());
 }

@@ -11,7 +11,6 @@ mod targets;
 mod world;
 
 use std::io::Write;
-use std::time::Instant;
 
 use contrapposto::contact::Slip;
 use contrapposto::simulation::{Run, Scenario, ScenarioError, Snapshot, StopReason};
@@ -37,23 +36,25 @@ struct Course {
     findings: Findings,
     /// The last snapshot: after 900 samples, else that of the start.
     snapshot: Snapshot,
+    /// Processor time of the slowest step, or of the start, s.
     slowest: f64,
 }
 
 fn course(scenario: &Scenario) -> Result<(Course, StopReason), ScenarioError> {
-    let begin = Instant::now();
+    let begin = processor_time();
     let mut run = Run::new(scenario)?;
-    println!("  start found in {:.2} s, {} solver steps", begin.elapsed().as_secs_f64(), run.solver_steps());
-    let (mut digests, mut worst, mut slowest) = (vec![], Worst::default(), begin.elapsed().as_secs_f64());
+    let mut slowest = processor_time() - begin;
+    println!("  start found in {slowest:.2?} of processor, {} solver steps", run.solver_steps());
+    let (mut digests, mut worst) = (vec![], Worst::default());
     let (mut targets, mut judge) = (Targets::default(), Judge::new(scenario));
     loop {
-        let begin = Instant::now();
+        let begin = processor_time();
         let Some(sample) = run.next_sample()? else { break };
         worst.take(scenario, &sample);
         targets.take(scenario, &sample);
         judge.take(&sample);
         digests.push(digest(&sample));
-        slowest = slowest.max(begin.elapsed().as_secs_f64());
+        slowest = slowest.max(processor_time() - begin);
     }
     let summary = run.summary();
     let verdict = Verdict::of_run(scenario, &summary);
@@ -63,6 +64,7 @@ fn course(scenario: &Scenario) -> Result<(Course, StopReason), ScenarioError> {
     assert_eq!(slip.share_of(Slip::NOTICED), worst.slip, "the greatest slip of the summary is that of the samples");
     assert!(summary.sliding_since.is_some() || summary.standing.is_some_and(|end| !end.slip.exceeds(Slip::GREATEST)));
     let (snapshot, findings) = (run.snapshot().clone(), judge.findings());
+    let slowest = slowest.as_secs_f64();
     Ok((Course { digests, worst, targets, findings, snapshot, slowest }, summary.reason))
 }
 
