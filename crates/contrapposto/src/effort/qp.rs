@@ -63,8 +63,9 @@ pub(crate) struct QuadraticProgram {
     /// `H d`; during a solve `M d` of the unknowns at bounds.
     product: Vec<f64>,
     pub(super) dual: DualActiveSet,
-    /// Programs solved so far.
-    solved: usize,
+    /// Work of all programs so far, in units of [`Engine::work`](crate::posture_solver::Engine::work): of each one what it takes by itself, whatever
+    /// was solved before.
+    pub(crate) work: usize,
     /// Constraints of the last program contradict each other by more than [`CONTRADICTION`].
     pub(crate) contradictory: bool,
     // Scratch.
@@ -79,16 +80,17 @@ impl QuadraticProgram {
         self.at_limit.clear();
     }
 
-    /// Work of all programs solved so far, in units of [`Engine::work`](crate::posture_solver::Engine::work).
-    pub(crate) fn work(&self) -> usize {
-        WORK_OF_PROGRAM * self.solved + self.dual.changes() / DUAL_CHANGES_OF_A_UNIT
-    }
-
     /// Solves with at least this regularisation; returns the one that was needed. `None` if none up to
     /// [`LARGEST_REGULARISATION`] makes the matrix positive definite, or the solution is not finite.
     pub(crate) fn solve(&mut self, regularisation: f64) -> Option<f64> {
+        let before = self.dual.changes();
+        let needed = self.find(regularisation);
+        self.work += WORK_OF_PROGRAM + (self.dual.changes() - before) / DUAL_CHANGES_OF_A_UNIT;
+        needed
+    }
+
+    fn find(&mut self, regularisation: f64) -> Option<f64> {
         let (n, m) = (self.n, self.lower.len());
-        self.solved += 1;
         self.contradictory = false;
         self.at_bound.resize(n, 0);
         self.at_limit.resize(m, 0);
@@ -575,10 +577,10 @@ mod tests {
                 program.lower.push(lower);
                 program.upper.push(upper);
             }
-            let before = program.work();
+            let before = program.work;
             if program.solve(0.0).is_some() {
                 told += usize::from(program.contradictory);
-                work += program.work() - before;
+                work += program.work - before;
             }
         }
         println!("seed {SEED}: {told} of 100 told, work {work}");

@@ -235,7 +235,7 @@ impl Sqp {
 
     /// Work of all descents so far ([`QuadraticProgram::work`]).
     pub(crate) fn work(&self) -> usize {
-        self.program.work()
+        self.program.work
     }
 
     /// Evaluates the iterate at `start` and forgets earlier descents.
