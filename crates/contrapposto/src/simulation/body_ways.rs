@@ -46,8 +46,8 @@ impl BodyMotion<'_> {
             self.forget();
             return stands.ok_or(ScenarioError::CannotStand(missing));
         }
-        // A task that is missed may need legs that stand in another way.
-        let work = SEARCH_BUDGET_OF_STEP;
+        // A task that is missed may need legs that stand in another way: with all joints free a search takes longer.
+        let work = SEARCH_BUDGET_OF_STEP * if missed { 2 } else { 1 };
         let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: !missed };
         let Searched { found, minima, work, cut } = self.easiest(&posture, &[], budget)?;
         let (mut found, steps) = self.settled(found.unwrap_or_else(|| posture.clone()))?;

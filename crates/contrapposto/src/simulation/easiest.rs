@@ -21,8 +21,9 @@ const SEARCH_STEP: f64 = 0.1;
 const SEARCH_SOLVE_STEPS: usize = 300;
 /// Work of the solver ([`crate::posture_solver::Engine::work`]) that all searches of a run may do together: about 25 seconds on one core. Assumed.
 pub(super) const SEARCH_BUDGET: usize = 200_000;
-/// Work that the searches of one time step, or of the start, may do together, with the ways that they plan: about 5 seconds on one core.
-/// Searches for two feet that may be put elsewhere fit in; with a hand on a counter they end at it, after the step was found.
+/// Work that the searches of one time step, or of the start, may do together, with the ways that they plan: about 5 seconds on one core;
+/// twice as much for a start that misses a task. Searches for two feet that may be put elsewhere fit in; with a hand on a counter they end at it,
+/// after the step was found.
 pub(super) const SEARCH_BUDGET_OF_STEP: usize = 36_000;
 /// A posture is worth a motion if its effort is less than this share of the present one.
 const WORTH_A_MOTION: f64 = 0.98;
