@@ -1,4 +1,5 @@
-//! Errors of the tasks that no relief may make worse, and what supports carry beyond their greatest share, which is above all tasks.
+//! Errors of the tasks that no relief may make worse, and of the supports, which come before all tasks: how far they are off their places, and what
+//! they carry beyond their greatest share.
 
 use contrapposto::contact::Slip;
 use contrapposto::simulation::{Sample, Scenario};
@@ -8,11 +9,11 @@ const MOST_RISE: f64 = 1e-3;
 /// A task has come nearer where its error has fallen by more, m or rad: those below it may be farther then, however little it gains.
 const NEARER: f64 = 1e-6;
 
-/// Errors of the shares and of the tasks above relief since the last change of loads, targets or supports, or since one above them has come
+/// Errors of the supports and of the tasks above relief since the last change of loads, targets or supports, or since one above them has come
 /// nearer.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Targets {
-    /// The shares, then by task, the most important first: its least error so far, and its error from which on it has come nearer.
+    /// Places, shares, then by task, the most important first: its least error so far, and its error from which on it has come nearer.
     tasks: Vec<(f64, f64)>,
     /// Events that have happened.
     events: usize,
@@ -23,21 +24,22 @@ pub(crate) struct Targets {
 impl Targets {
     pub(crate) fn take(&mut self, scenario: &Scenario, sample: &Sample) {
         let events = scenario.events.partition_point(|event| event.time <= sample.time + 1e-9);
-        // Supports come first: while they slide, which the run says and from some millimetres on ends for, tasks may give.
-        let slides = sample.standing.unwrap().slip.exceeds(Slip::NOTICED);
+        // Supports come first: while they slide, which the run says and from some millimetres on ends for, tasks may give, and while they come nearer to
+        // their places.
+        let standing = sample.standing.unwrap();
+        let slides = standing.slip.exceeds(Slip::NOTICED);
         if events > self.events || sample.stepping || slides {
             self.events = events;
             self.tasks.clear();
         }
-        let standing = sample.standing.unwrap();
         let carried = standing.contacts.iter().zip(&scenario.supports).filter(|(_, support)| support.share_max < 1.0);
         let beyond: f64 = carried.map(|(contact, support)| (contact.share - support.share_max).max(0.0)).sum();
         let tasks = standing.errors.iter().zip(&scenario.tasks);
         let errors = tasks.filter(|(_, task)| task.above_relief).map(|(error, _)| *error);
-        self.errors(std::iter::once(beyond).chain(errors), sample.time);
+        self.errors([standing.slip.length(), beyond].into_iter().chain(errors), sample.time);
     }
 
-    /// Takes the errors of the shares and of the tasks above relief.
+    /// Takes the errors of the supports' places, of the shares and of the tasks above relief.
     fn errors(&mut self, errors: impl Iterator<Item = f64>, time: f64) {
         for (k, error) in errors.enumerate() {
             self.tasks.resize(self.tasks.len().max(k + 1), (error, error));
