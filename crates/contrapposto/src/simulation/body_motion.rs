@@ -260,13 +260,16 @@ impl<'a> BodyMotion<'a> {
         }
         self.before.values_mut().copy_from_slice(posture.values());
         for _ in 0..RECOVERY_STEPS {
-            // Where supports come back to their places at the cost of tasks and effort the merit rises, and steps would become ever shorter.
-            self.engine.widen_trust_region();
             self.engine.step(posture)?;
             self.update(posture)?;
-            if self.contact().balance() == Balance::Held && !self.engine.slip().exceeds(Slip::NOTICED) {
+            if self.contact().balance() != Balance::Held {
+                continue;
+            }
+            if !self.engine.slip().exceeds(Slip::NOTICED) {
                 break;
             }
+            // Where supports come back to their places at the cost of tasks and effort the merit rises, and steps would become ever shorter.
+            self.engine.widen_trust_region();
         }
         if self.contact().balance() == Balance::Held {
             self.restart_convergence();
