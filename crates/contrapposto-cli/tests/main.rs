@@ -29,6 +29,7 @@ mod muscles;
 mod oracle;
 mod out_of_reach;
 mod own_export;
+mod passive;
 mod phone;
 mod population;
 mod pose;

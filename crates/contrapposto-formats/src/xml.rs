@@ -8,7 +8,7 @@ mod parse;
 
 pub use error::{Malformed, XmlError};
 pub use parse::parse;
-pub(crate) use parse::shorten;
+pub(crate) use parse::{shorten, shorten_to};
 
 /// Largest sizes that a reader accepts. One struct for the model formats; each cap is tested at its value and one above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -26,6 +26,7 @@ mod fatigue;
 mod force_plates;
 mod fuzz_seeds;
 mod gltf;
+mod ground_reaction;
 mod hanging_arms;
 mod heel;
 mod hip_tracts;

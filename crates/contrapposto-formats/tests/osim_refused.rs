@@ -176,6 +176,187 @@ fn what_matters_and_is_not_supported_is_an_error_with_its_place() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// What only wrong files reach: each is refused with its place and what would be accepted.
+#[test]
+fn what_is_missing_twice_or_out_of_its_limits_is_an_error_with_its_place() {
+    let pin = joint("PinJoint", PIN);
+    let set = |kind: &str, inside: &str| document(&pin, &format!("<{kind}><objects>\n{inside}</objects></{kind}>"));
+    let force = |inside: &str| set("ForceSet", inside);
+    let coupled = |function: &str| {
+        set(
+            "ConstraintSet",
+            &format!(
+                "<CoordinateCouplerConstraint>{function}<independent_coordinate_names>q</independent_coordinate_names>\
+                 <dependent_coordinate_name>q</dependent_coordinate_name></CoordinateCouplerConstraint>"
+            ),
+        )
+    };
+    let axis = |coordinates: &str, function: &str| {
+        document(
+            &custom(&format!(
+                "<TransformAxis name=\"rotation1\"><coordinates>{coordinates}</coordinates><axis>1 0 0</axis>{function}</TransformAxis>"
+            )),
+            "",
+        )
+    };
+    let two = |inside: &str| {
+        let both = "<coordinates><Coordinate name=\"q\"/><Coordinate name=\"r\"/></coordinates>";
+        document(&joint("CustomJoint", &format!("{both}<SpatialTransform>\n{inside}</SpatialTransform>")), "")
+    };
+    let frame = "<socket_parent_frame>/bodyset/b</socket_parent_frame>";
+    let nested = |levels: usize| {
+        let open = "<PhysicalOffsetFrame name=\"x\"><socket_parent>/ground</socket_parent><components>".repeat(levels);
+        document(
+            &pin,
+            &format!("<components>{open}{}</components>", "</components></PhysicalOffsetFrame>".repeat(levels)),
+        )
+    };
+    let loose = ["b2", "b3"].map(|name| format!("<Body name=\"{name}\"><mass>1</mass></Body>")).concat();
+    let ring = [("k", "b2", "b3"), ("l", "b3", "b2")].map(|(name, parent, child)| {
+        pin.replace("\"j\"", &format!("\"{name}\""))
+            .replace("/ground<", &format!("/bodyset/{parent}<"))
+            .replace("/bodyset/b<", &format!("/bodyset/{child}<"))
+            .replace("\"q\"", &format!("\"{name}_q\""))
+    });
+    let marker = format!("<Marker name=\"m\">{frame}<location>0 0 0</location></Marker>");
+    let cases = [
+        (coupled(""), "<CoordinateCouplerConstraint> at line 8, column 1: <coupled_coordinates_function> is missing"),
+        (
+            coupled(
+                "<coupled_coordinates_function><LinearFunction><coefficients>1</coefficients></LinearFunction></coupled_coordinates_function>",
+            ),
+            "`1 coefficients`: 2 coefficients are needed for 1 coordinate(s)",
+        ),
+        (
+            coupled(
+                "<coupled_coordinates_function><PolynomialFunction><coefficients></coefficients></PolynomialFunction></coupled_coordinates_function>",
+            ),
+            "a coefficient is missing",
+        ),
+        (
+            coupled(
+                "<coupled_coordinates_function><MultiplierFunction><scale>2</scale></MultiplierFunction></coupled_coordinates_function>",
+            ),
+            "the <function> to multiply is missing",
+        ),
+        (
+            coupled("<coupled_coordinates_function><FourierFunction/></coupled_coordinates_function>"),
+            "function FourierFunction is not supported; accepted: Constant",
+        ),
+        (
+            force("<ExpressionBasedCoordinateForce><coordinate>q</coordinate></ExpressionBasedCoordinateForce>"),
+            "<ExpressionBasedCoordinateForce> at line 8, column 1: <expression> is missing",
+        ),
+        (document(&joint("CustomJoint", PIN), ""), "<CustomJoint> at line 4, column 1: <SpatialTransform> is missing"),
+        (
+            axis("", "<LinearFunction name=\"function\"/>"),
+            "a function of no coordinate is not supported; accepted: a Constant",
+        ),
+        (
+            two(
+                "<TransformAxis name=\"rotation1\"><coordinates>q r</coordinates><axis>1 0 0</axis><Sine name=\"function\"/></TransformAxis>",
+            ),
+            "Sine of 2 coordinates is not supported; accepted: a LinearFunction, or a function of one coordinate",
+        ),
+        (two("").replace("\"r\"", "\"q\""), "a second coordinate `q`; names must be unique"),
+        (nested(9), "components inside each other"),
+        (
+            document(&pin, "").replace("</mass></Body>", "</mass></Body><Sphere name=\"s\"/>"),
+            "Sphere is not supported; accepted: <Body>",
+        ),
+        (
+            document(&pin, "").replace("</mass></Body>", "</mass></Body><Body name=\"b\"><mass>1</mass></Body>"),
+            "a second body `b`; names must be unique",
+        ),
+        (
+            document(&(pin.clone() + &ring.concat()), "").replace("</mass></Body>", &format!("</mass></Body>{loose}")),
+            "in a loop of joints apart from ground, is not supported",
+        ),
+        (set("MarkerSet", &marker.repeat(2)), "a second marker `m`; names must be unique"),
+        ("<OpenSimDocument Version=\"40500\"/>".to_owned(), "a <Model> is missing"),
+    ];
+    let mut wrong = Vec::new();
+    for (text, expected) in cases {
+        let found =
+            osim::read(text.as_bytes(), "f.osim").map_or_else(|error| error.to_string(), |_| "accepted".to_owned());
+        if !found.contains(expected) || !found.starts_with("f.osim: ") {
+            wrong.push(format!("expected: {expected}\nfound:    {found}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A muscle or a surface with a fault is left out with the reason; the body is read.
+#[test]
+fn muscles_and_surfaces_that_make_no_sense_are_left_out_with_the_reason() {
+    let pin = joint("PinJoint", PIN);
+    let force = |inside: &str| document(&pin, &format!("<ForceSet><objects>\n{inside}</objects></ForceSet>"));
+    let frame = "<socket_parent_frame>/bodyset/b</socket_parent_frame>";
+    let point = |x: f64| format!("<PathPoint name=\"p{x}\">{frame}<location>{x} 0 0</location></PathPoint>");
+    let muscle = |inside: &str| force(&format!("<Thelen2003Muscle name=\"s\">{inside}</Thelen2003Muscle>"));
+    let path = |points: &str, wraps: &str| {
+        muscle(&format!(
+            "<GeometryPath name=\"g\"><PathPointSet><objects>{points}</objects></PathPointSet>\
+             <PathWrapSet><objects>{wraps}</objects></PathWrapSet></GeometryPath>"
+        ))
+    };
+    let both = point(0.0) + &point(1.0);
+    let on_body = |inside: &str| {
+        path(&both, "").replace(
+            "<mass>1</mass>",
+            &format!("<mass>1</mass><WrapObjectSet><objects>{inside}</objects></WrapObjectSet>"),
+        )
+    };
+    let over = |range: &str| {
+        let wrap = format!("<PathWrap name=\"w\"><wrap_object>c</wrap_object><range>{range}</range></PathWrap>");
+        path(&both, &wrap).replace(
+            "<mass>1</mass>",
+            "<mass>1</mass><WrapObjectSet><objects><WrapSphere name=\"c\"><radius>0.1</radius></WrapSphere></objects></WrapObjectSet>",
+        )
+    };
+    let cases = [
+        (muscle(""), "<GeometryPath> is missing"),
+        (muscle("<Scholz2015GeometryPath/>"), "Scholz2015GeometryPath is not supported; accepted: GeometryPath"),
+        (path(&point(0.0), ""), "`1 points`: a path has at least two"),
+        (
+            path(&(point(0.0) + &point(1.0).replace("PathPoint", "SurfacePoint")), ""),
+            "SurfacePoint is not supported; accepted: PathPoint",
+        ),
+        (path(&(point(0.0) + &point(2e9)), ""), "a point is at most 1e9 m away"),
+        (
+            path(&both, "<PathWrap name=\"w\"><wrap_object>c</wrap_object></PathWrap>"),
+            "a path over `c`, which is not there",
+        ),
+        (over("1 3"), "`3`: the points are numbered from 1 to 2"),
+        (over("2 1"), "`2 1`: the first point of a range comes before its last"),
+        (on_body("<WrapCone name=\"c\"/>"), "WrapCone is not supported; accepted: WrapCylinder"),
+        (on_body("<WrapSphere name=\"c\"><radius>0</radius></WrapSphere>"), "radius must be above 0"),
+        (
+            on_body("<WrapEllipsoid name=\"c\"><dimensions>1 0 1</dimensions></WrapEllipsoid>"),
+            "`1 0 1`: dimensions must be above 0",
+        ),
+        (
+            on_body("<WrapTorus name=\"c\"><inner_radius>2</inner_radius><outer_radius>1</outer_radius></WrapTorus>"),
+            "`1`: outer_radius must be above 2",
+        ),
+        (
+            on_body("<WrapSphere name=\"c\"><translation>2e9 0 0</translation></WrapSphere>"),
+            "a surface is at most 1e9 m away",
+        ),
+    ];
+    let mut wrong = Vec::new();
+    for (text, expected) in cases {
+        let body = osim::read(text.as_bytes(), "f.osim").unwrap();
+        let tallies = body.muscles.tally.0.values();
+        let reasons: Vec<&String> =
+            tallies.filter(|tally| tally.refused > 0).flat_map(|tally| tally.reasons.keys()).collect();
+        if !reasons.iter().any(|reason| reason.contains(expected)) {
+            wrong.push(format!("expected: {expected}\nfound:    {reasons:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn couplings_in_a_circle_and_forces_on_balls_are_refused() {
     let ball = joint(

@@ -80,6 +80,47 @@ fn ranges_without_end_are_refused_where_they_stand() {
     assert_eq!(model.with_range(0, (-1e9, 1e9)).unwrap().coordinates()[0].range, (-1e9, 1e9));
 }
 
+/// A table of strength has its values at its angles, for each sense its own, and between them none beyond these.
+#[test]
+fn strength_comes_from_a_table_over_the_angle() {
+    let model = adult(&Adult::default()).unwrap();
+    let knee = model.coordinate("knee_angle_r").unwrap();
+    let lay = |strength: &str| {
+        let text = format!("[coordinates.knee_angle_r]\nstrength = {{ {strength} }}\n");
+        let laid = overlay("knee.toml", text.as_bytes(), model.clone());
+        laid.map_err(|error| {
+            let mut text = String::new();
+            miette::NarratableReportHandler::new().render_report(&mut text, &error).unwrap();
+            text
+        })
+    };
+    let laid = lay("table_deg_nm = [[0, 80, 150], [60, 100, 210], [120, 60, 90]]").unwrap();
+    assert!(laid.changes[0].note.contains("strength of a table of 3 rows"), "{}", laid.changes[0].note);
+    let groups = laid.model.coordinates()[knee].groups.as_ref().unwrap();
+    let torques = |degrees: f64| [0, 1].map(|side| groups[side].strength.torque(degrees.to_radians()));
+    for (angle, expected) in [(0.0, [80.0, 150.0]), (60.0, [100.0, 210.0]), (120.0, [60.0, 90.0])] {
+        let found = torques(angle);
+        assert!(
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9),
+            "{angle}: {found:?}"
+        );
+    }
+    for (angle, low, high) in [(30.0, [80.0, 150.0], [100.0, 210.0]), (90.0, [60.0, 90.0], [100.0, 210.0])] {
+        let found = torques(angle);
+        assert!((0..2).all(|side| low[side] < found[side] && found[side] < high[side]), "{angle}: {found:?}");
+    }
+    for (strength, words) in [
+        ("positive_nm = 100", "give positive_nm and negative_nm, or table_deg_nm alone"),
+        ("positive_nm = 100, negative_nm = 0", "negative_nm is 0"),
+        ("table_deg_nm = [[0, 80, 150], [60, 100, -1]]", "at 60 deg the sizes are 100 and -1"),
+        ("table_deg_nm = [[60, 80, 150], [0, 100, 200]]", "give two rows or more whose angles rise"),
+        ("table_deg_nm = [[0, 80, 150]]", "these rows are no table of strength"),
+    ] {
+        let message = lay(strength).map(|_| ()).unwrap_err();
+        assert!(message.contains(words) && message.contains("line 2, column"), "{message}");
+    }
+}
+
 /// Ranges are ranges, defaults lie in them, and every torque in them is a number.
 fn sound(model: &Model) -> bool {
     let mut values = model.default_posture().values().to_vec();

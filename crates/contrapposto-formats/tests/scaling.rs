@@ -75,14 +75,60 @@ fn all(factors: Vector3<f64>) -> BTreeMap<String, Vector3<f64>> {
     ["thigh", "shank"].map(|body| (body.to_owned(), factors)).into()
 }
 
+/// [`LEG`] with a coordinate along which the shank slides as the knee bends.
+fn sliding() -> String {
+    let slide = "<TransformAxis name=\"translation3\"><coordinates>slide</coordinates><axis>0 0 1</axis>\
+                 <LinearFunction name=\"function\"><coefficients>1 0</coefficients></LinearFunction></TransformAxis></SpatialTransform>";
+    let coupling = "<ConstraintSet><objects><CoordinateCouplerConstraint name=\"c\"><coupled_coordinates_function>\
+                    <LinearFunction><coefficients>0.02 0.01</coefficients></LinearFunction></coupled_coordinates_function>\
+                    <independent_coordinate_names>knee</independent_coordinate_names><dependent_coordinate_name>slide</dependent_coordinate_name>\
+                    </CoordinateCouplerConstraint></objects></ConstraintSet><ForceSet>";
+    let knee = "<Coordinate name=\"knee\"><default_value>-0.5</default_value></Coordinate>";
+    LEG.replace("</SpatialTransform>", slide)
+        .replace("<ForceSet>", coupling)
+        .replace(knee, &format!("{knee}<Coordinate name=\"slide\"><range>-1 1</range></Coordinate>"))
+}
+
+/// [`LEG`] with another surface in place of its cylinder.
+fn over(surface: &str) -> String {
+    let (from, to) =
+        (LEG.find("<WrapCylinder").unwrap(), LEG.find("</WrapCylinder>").unwrap() + "</WrapCylinder>".len());
+    format!("{}{surface}{}", &LEG[..from], &LEG[to..])
+}
+
 #[test]
 fn equal_factors_make_a_similar_body() {
+    is_similar(LEG);
+    is_similar(&sliding());
+    let place = "<xyz_body_rotation>0.1 0.2 0</xyz_body_rotation><translation>0 -0.4 0</translation>";
+    for (kind, sizes) in [
+        ("WrapSphere", "<radius>0.04</radius>"),
+        ("WrapSphere", ""),
+        ("WrapEllipsoid", "<dimensions>0.03 0.04 0.06</dimensions>"),
+        ("WrapTorus", "<inner_radius>0.02</inner_radius><outer_radius>0.07</outer_radius>"),
+    ] {
+        is_similar(&over(&format!("<{kind} name=\"knee\">{place}{sizes}</{kind}>")));
+    }
+}
+
+#[test]
+fn a_sliding_coordinate_that_follows_another_needs_equal_factors() {
+    let scaling = Scaling { factors: all(Vector3::new(1.1, 1.2, 0.9)), ..Scaling::default() };
+    let error = scaled(&sliding(), "leg.osim", &scaling).unwrap_err().to_string();
+    assert!(
+        error.contains("a coupling of the distance `slide` on a body with three factors is not supported"),
+        "{error}"
+    );
+}
+
+/// Whether a body that is scaled by one factor has all lengths times that factor.
+fn is_similar(text: &str) {
     const FACTOR: f64 = 1.37;
     let scaling = Scaling { factors: all(Vector3::repeat(FACTOR)), ..Scaling::default() };
-    let found = scaled(LEG, "leg.osim", &scaling).unwrap();
+    let found = scaled(text, "leg.osim", &scaling).unwrap();
     assert!(found.left.is_empty(), "{:?}", found.left);
     assert!(found.text.contains("<!-- a comment that stays -->") && found.text.contains("f.vtp"));
-    let (before, after) = (opened(LEG), opened(&found.text));
+    let (before, after) = (opened(text), opened(&found.text));
     assert!((after.model.mass() - 11.0 * FACTOR.powi(3)).abs() < 1e-12);
     let mut posture = before.model.default_posture();
     let (mut small, mut large) = (Kinematics::new(&before.model), Kinematics::new(&after.model));
@@ -177,6 +223,62 @@ fn older_documents_and_setup_files_of_other_tools_are_refused_by_name() {
     let zero = "<ScaleTool><ModelScaler><ScaleSet><objects><Scale><scales>1 0 1</scales><segment>thigh</segment></Scale></objects></ScaleSet></ModelScaler></ScaleTool>";
     let zero = scale_setup("s.xml", zero.as_bytes()).unwrap_err().to_string();
     assert!(zero.contains("the factor of `thigh` is 0; 0.01 to 100 is accepted"), "{zero}");
+    let tool = |inside: &str| scale_setup("s.xml", format!("<ScaleTool>{inside}</ScaleTool>").as_bytes());
+    let measured = |inside: &str| {
+        let set = format!(
+            "<MeasurementSet><objects><Measurement name=\"m\"><apply>true</apply>{inside}</Measurement></objects></MeasurementSet>"
+        );
+        tool(&format!("<ModelScaler>{set}</ModelScaler>"))
+    };
+    for (setup, words) in [
+        (
+            tool("<ModelScaler><scaling_order>measure</scaling_order></ModelScaler>"),
+            "<scaling_order> has `measure`; `measurements` and",
+        ),
+        (
+            measured(
+                "<MarkerPairSet><objects><MarkerPair><markers>a b c</markers></MarkerPair></objects></MarkerPairSet>",
+            ),
+            "<markers> has 3 names; a pair has two",
+        ),
+        (
+            measured(
+                "<BodyScaleSet><objects><BodyScale name=\"thigh\"><axes>X W</axes></BodyScale></objects></BodyScaleSet>",
+            ),
+            "<axes> is `X W`; some of X, Y and Z are accepted",
+        ),
+        (tool("<MarkerPlacer><IKTaskSet file=\"tasks.xml\"/></MarkerPlacer>"), "put the IKTaskSet into the setup file"),
+    ] {
+        let error = setup.unwrap_err().to_string();
+        assert!(error.starts_with("s.xml") && error.contains(words), "{error}");
+    }
+    let files = tool(
+        "<GenericModelMaker><model_file>m.osim</model_file></GenericModelMaker><MarkerPlacer><marker_file>still.trc</marker_file></MarkerPlacer>",
+    );
+    let named: Vec<String> =
+        files.unwrap().named.into_iter().map(|file| format!("{} {}", file.element, file.name)).collect();
+    assert_eq!(named, ["model_file m.osim", "marker_file still.trc"]);
+}
+
+#[test]
+fn a_wrong_set_of_markers_is_refused_where_it_stands() {
+    let bodies = ["thigh".to_owned()];
+    let marker = |name: &str, place: &str| {
+        format!("<Marker name=\"{name}\"><body>thigh</body><location>{place}</location></Marker>")
+    };
+    let set =
+        |inside: &str| format!("<OpenSimDocument><MarkerSet><objects>{inside}</objects></MarkerSet></OpenSimDocument>");
+    for (text, words) in [
+        ("<OpenSimDocument/>".to_owned(), "holds no <MarkerSet>; a file of markers has one"),
+        (set(&marker("a", "0 0 0").repeat(2)), "two markers are named `a`"),
+        (set(&marker("a/b", "0 0 0")), "the <Marker> has no name, or one with `/`"),
+        (set(&marker("a", "0 0")), "<location> is `0 0`; three finite numbers are accepted"),
+        (set(&marker("a", "0 0 1e10")), "three finite numbers are accepted"),
+        (set(&marker("a", "0 0 0").replace("thigh", "tigh")), "did you mean `thigh`?"),
+    ] {
+        let error = marker_set("set.xml", text.as_bytes(), &bodies).unwrap_err().to_string();
+        assert!(error.starts_with("set.xml") && error.contains(words), "{error}");
+    }
 }
 
 #[test]

@@ -69,6 +69,13 @@ fn a_refused_plan_names_the_key_with_line_and_column_and_the_accepted_alternativ
         ("\"load.0.mass_kg\"", "\"load..mass_kg\"", 8, 1, "`load..mass_kg` is no path of a key"),
         ("[\"female\", \"male\"]", "[]", 11, 30, "the list is empty"),
         ("\"sobol\"", "\"grid\"", 7, 27, "a grid needs the number of values"),
+        (
+            "[1, 0.2] }\n\"model",
+            "[0, 0.2] }\n\"model",
+            10,
+            34,
+            "median and standard deviation of the logarithm are 0 and 0.2; both must be",
+        ),
         ("base = \"../hold-tool.toml\"", "base = \"\"", 1, 8, "`base` is no name of a file"),
     ] {
         let text = PLAN.replacen(from, to, 1);
@@ -91,11 +98,32 @@ fn correlations_that_no_parameters_can_have_at_once_are_refused() {
 }
 
 #[test]
+fn each_design_is_read_by_its_word() {
+    let designs = [Design::Sobol, Design::ShiftedSobol, Design::LatinHypercube, Design::Random];
+    for (design, word) in designs.into_iter().zip(["sobol", "shifted_sobol", "latin_hypercube", "random"]) {
+        let plan = read_plan("plan.toml", PLAN.replace("\"sobol\"", &format!("\"{word}\"")).as_bytes()).unwrap();
+        assert_eq!((plan.design, plan.design.word()), (design, word));
+    }
+}
+
+#[test]
 fn a_grid_has_as_many_rows_as_combinations() {
     let text = "base = \"a.toml\"\ndesign = \"grid\"\n[parameters]\na = { range = [0, 1], levels = 4 }\nb = { list = [1, 2, 3] }\n";
     assert_eq!(read_plan("plan.toml", text.as_bytes()).unwrap().rows, 12);
     let error = message(&read_plan("plan.toml", format!("rows = 5\n{text}").as_bytes()).unwrap_err());
     assert!(error.0 == 1 && error.2.contains("the grid has 12 combinations"), "{error:?}");
+    let refused =
+        |from: &str, to: &str| message(&read_plan("plan.toml", text.replace(from, to).as_bytes()).unwrap_err()).2;
+    assert!(refused("levels = 4", "levels = 0").contains("`levels` is 0; it must lie in 1..10000000"));
+    assert!(
+        refused("[1, 2, 3]", "[1, 2, 3], levels = 3")
+            .contains("leave `levels` out: a list has its own number of values")
+    );
+    assert!(refused("levels = 4", "levels = 4, correlate = { b = 0.5 }").contains("a grid has no correlation"));
+    let none = "base = \"a.toml\"\ndesign = \"random\"\nrows = 2\n[parameters]\n";
+    assert!(
+        message(&read_plan("plan.toml", none.as_bytes()).unwrap_err()).2.contains("0 parameters; there must be 1 to")
+    );
     let huge = text.replace("levels = 4", "levels = 4000000");
     assert!(message(&read_plan("plan.toml", huge.as_bytes()).unwrap_err()).2.contains("more than 10000000"));
 }

@@ -60,11 +60,6 @@ impl Measurement {
         }
         Ok(measurement)
     }
-
-    /// The names of its markers.
-    pub fn markers(&self) -> impl Iterator<Item = &str> {
-        self.pairs.iter().flatten().map(String::as_str)
-    }
 }
 
 /// Axes of a word like `XYZ` or `X Y`; `None` for other letters or none.

@@ -100,3 +100,34 @@ fn distinct(corners: &[Vector3<f64>], most: usize) -> Vec<Vector3<f64>> {
     }
     kept
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a fine grid of corners, some above the sole, those on the edge of its disc are kept, 32 at most, in the order of the file.
+    #[test]
+    fn of_many_corners_the_farthest_ones_are_kept() {
+        let down = Unit::new_normalize(Vector3::new(0.0, -1.0, 0.0));
+        let places = (-20..=20).flat_map(|x| (-20..=20).map(move |z| (f64::from(x), f64::from(z))));
+        let disc = places.filter(|(x, z)| x * x + z * z <= 400.0);
+        let corners: Vec<Vector3<f64>> =
+            disc.flat_map(|(x, z)| [0.0, 0.0015, 0.01].map(|y| Vector3::new(0.01 * x, y, 0.01 * z))).collect();
+        let kept = sole(corners.clone(), &down);
+        assert!(kept.len() > 8 && kept.len() <= SOLE_CORNERS, "{}", kept.len());
+        for direction in (0..SOLE_CORNERS).map(|i| TAU * i as f64 / SOLE_CORNERS as f64) {
+            let along = |corner: &Vector3<f64>| corner.x * libm::cos(direction) + corner.z * libm::sin(direction);
+            let farthest = |corners: &[Vector3<f64>]| corners.iter().map(along).fold(0.0, f64::max);
+            assert!(farthest(&kept) > 0.98 * farthest(&corners), "{direction} rad");
+        }
+        let place = |corner: &Vector3<f64>| corners.iter().position(|other| other == corner).unwrap();
+        assert!(kept.iter().all(|corner| corner.y < SOLE_DEPTH) && kept.is_sorted_by_key(place));
+    }
+
+    #[test]
+    fn few_corners_are_all_kept_and_equal_ones_once() {
+        let down = Unit::new_normalize(Vector3::new(0.0, -1.0, 0.0));
+        let corners = vec![Vector3::x(), Vector3::z(), Vector3::x(), Vector3::y()];
+        assert_eq!(sole(corners, &down), [Vector3::x(), Vector3::z()]);
+    }
+}

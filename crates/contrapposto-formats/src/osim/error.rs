@@ -3,7 +3,10 @@
 use super::expression::ExpressionError;
 use crate::model_ir::SplineError;
 use crate::numbers::NumberError;
-use crate::xml::{Place, XmlError, shorten};
+use crate::xml::{Place, XmlError, shorten, shorten_to};
+
+/// Characters of what is not supported in a message: some words and a name.
+const MOST_WHAT: usize = 160;
 
 /// A refused file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -109,7 +112,7 @@ fn did_you_mean(near: &Option<String>) -> String {
 
 impl OsimProblem {
     pub(super) fn unsupported(place: Place, what: &str, accepted: &'static str) -> Self {
-        Self::Unsupported { place, what: shorten(what), accepted }
+        Self::Unsupported { place, what: shorten_to(what, MOST_WHAT), accepted }
     }
 
     pub(super) fn invalid(place: Place, value: &str, problem: impl Into<String>) -> Self {

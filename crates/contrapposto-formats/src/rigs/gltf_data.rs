@@ -183,7 +183,23 @@ fn embedded(uri: &str) -> Option<Vec<u8>> {
 
 #[cfg(test)]
 mod tests {
-    use super::embedded;
+    use super::{component_value, embedded};
+
+    /// The formulas of the specification (glTF 2.0, section 3.11, "Animations").
+    #[test]
+    fn integers_are_shares_of_their_greatest_value() {
+        let near = |bytes: &[u8], component: u64, expected: f64| {
+            let found = component_value(bytes, component);
+            assert!((found - expected).abs() < 1e-15, "{component}: {found} is not {expected}");
+        };
+        near(&127_i8.to_le_bytes(), 5120, 1.0);
+        near(&(-128_i8).to_le_bytes(), 5120, -1.0);
+        near(&51_u8.to_le_bytes(), 5121, 0.2);
+        near(&(-32_767_i16).to_le_bytes(), 5122, -1.0);
+        near(&i16::MIN.to_le_bytes(), 5122, -1.0);
+        near(&13_107_u16.to_le_bytes(), 5123, 0.2);
+        near(&0.75_f32.to_le_bytes(), 5126, 0.75);
+    }
 
     #[test]
     fn base64_is_read() {

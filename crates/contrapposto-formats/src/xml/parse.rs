@@ -339,12 +339,17 @@ fn resolve(name: &str) -> Option<char> {
 
 /// At most 40 characters of foreign text for a message, control characters escaped.
 pub(crate) fn shorten(text: &str) -> String {
+    shorten_to(text, 40)
+}
+
+/// At most so many characters of text with foreign names for a message, control characters escaped.
+pub(crate) fn shorten_to(text: &str, most: usize) -> String {
     let mut short: String = text
         .chars()
-        .take(40)
+        .take(most)
         .flat_map(|c| if c.is_control() { c.escape_default().collect::<Vec<_>>() } else { vec![c] })
         .collect();
-    if text.chars().nth(40).is_some() {
+    if text.chars().nth(most).is_some() {
         short.push_str("...");
     }
     short
