@@ -110,6 +110,38 @@ fn a_tool_without_a_place_is_only_carried_and_a_bag_hangs_on_the_side_that_is_na
     assert_eq!(loads[1], (torso.0, torso.1, true));
 }
 
+/// The feet that the floor names carry, and no other.
+#[test]
+fn the_floor_carries_the_feet_that_it_names() {
+    for (feet, expected) in
+        [("both", &["calcn_r", "calcn_l"][..]), ("right", &["calcn_r"]), ("left", &["calcn_l"]), ("none", &[])]
+    {
+        let seat = if feet == "none" { "[seat]\nheight_m = 0.45\n" } else { "" };
+        let scenario = read(&format!("[floor]\nfeet = \"{feet}\"\n{seat}"));
+        let names = scenario.supports.iter().map(|support| scenario.model.segments()[support.segment].name.as_str());
+        let feet: Vec<&str> = names.filter(|name| name.starts_with("calcn")).collect();
+        assert_eq!(feet, expected);
+    }
+}
+
+/// A bag weighs where it is worn: in the right half or the left half of the trunk, or behind its middle.
+#[test]
+fn bags_on_shoulders_and_back_pull_on_the_trunk_where_they_are_worn() {
+    let place = |on: &str| {
+        let scenario = read(&format!("[floor]\n[[bag]]\nmass_kg = 6\non = \"{on}\"\n"));
+        let [load] = &scenario.loads[..] else { panic!("{on}: {:?}", scenario.loads) };
+        assert_eq!(
+            (&load.kind, &*scenario.model.segments()[load.segment].name),
+            (&LoadKind::Weight(6.0), "torso"),
+            "{on}"
+        );
+        load.point
+    };
+    let [right, left, back] = ["right_shoulder", "left_shoulder", "back"].map(place);
+    assert!(right.z > 0.05 && (left.z + right.z).abs() < 1e-12 && (left.y - right.y).abs() < 1e-12, "{right} {left}");
+    assert!(back.z == 0.0 && back.x < right.x - 0.05 && back.y < right.y, "{back} {right}");
+}
+
 #[test]
 fn a_seat_without_a_posture_has_the_sitter_on_it_with_both_feet_on_the_floor() {
     for height in [0.35, 0.43, 0.55] {
