@@ -182,8 +182,8 @@ impl ActiveSet {
         independent
     }
 
-    /// Drops a constraint and updates the factor.
-    pub(crate) fn drop_constraint(&mut self, problem: &Problem, dropped: Constraint) {
+    /// Drops a constraint from the working set; the factor stays.
+    pub(crate) fn drop_from_working_set(&mut self, dropped: Constraint) {
         self.dropped.drop(dropped, self.working_set.side(dropped));
         match dropped {
             Constraint::Bound(i) => self.working_set.bounds[i] = Side::Inactive,
@@ -193,6 +193,11 @@ impl ActiveSet {
         for state in self.working_set.states.iter_mut().filter(|state| **state == RowState::Dependent) {
             *state = RowState::Inactive;
         }
+    }
+
+    /// Drops a constraint and updates the factor.
+    pub(crate) fn drop_constraint(&mut self, problem: &Problem, dropped: Constraint) {
+        self.drop_from_working_set(dropped);
         let row = self.factor.constraints().iter().position(|constraint| *constraint == dropped);
         let updated = match (row, dropped) {
             (Some(row), _) => self.factor.remove(row),
@@ -324,8 +329,8 @@ impl ActiveSet {
         }
     }
 
-    /// The active bound or row whose multiplier at level `k` violates its sign most; none where all signs are right.
-    pub(crate) fn most_dual_infeasible(&self, k: usize, above: usize, size: f64) -> Option<Constraint> {
+    /// The active bound, or row among `constraints`, whose multiplier at level `k` violates its sign most; none where all signs are right.
+    pub(crate) fn most_dual_infeasible(&self, k: usize, constraints: &[Constraint], size: f64) -> Option<Constraint> {
         if size == 0.0 {
             return None;
         }
@@ -344,7 +349,7 @@ impl ActiveSet {
                 consider(side.dual_infeasibility(*multiplier), Constraint::Bound(i));
             }
         }
-        for constraint in &self.factor.constraints()[..above] {
+        for constraint in constraints {
             if let Constraint::Row(row) = *constraint
                 && set.states[row] == RowState::Active
             {

@@ -206,7 +206,7 @@ impl IdentityLevel {
         }
         let above = set.factor.len();
         set.compute_multipliers(problem, k, above, size);
-        set.most_dual_infeasible(k, above, size)
+        set.most_dual_infeasible(k, set.factor.constraints(), size)
     }
 
     /// `b_i / w` of row `row` of the level, for unknown `i`; a negative coefficient counts with its sign.

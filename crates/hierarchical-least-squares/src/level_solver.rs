@@ -298,7 +298,7 @@ impl LevelSolver {
         }
         self.compute_gradient(problem, set, k);
         set.compute_multipliers(problem, k, self.above, self.gradient_size);
-        let dropped = set.most_dual_infeasible(k, self.above, self.gradient_size);
+        let dropped = set.most_dual_infeasible(k, &set.factor.constraints()[..self.above], self.gradient_size);
         if dropped.is_none() && !damped {
             set.fix_constraints_with_multipliers(k, self.above, self.gradient_size);
         }

@@ -49,6 +49,7 @@ mod residual_rows;
 mod rows;
 mod solver;
 mod tolerances;
+mod triangular_level;
 mod working_set;
 
 pub use multipliers::Multipliers;

@@ -6,6 +6,7 @@ use crate::level_solver::LevelSolver;
 use crate::linalg::norm;
 use crate::multipliers::Multipliers;
 use crate::problem::{Problem, ProblemError};
+use crate::triangular_level::TriangularLevel;
 
 /// End of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,7 @@ pub struct Solver {
     active_set: ActiveSet,
     level: LevelSolver,
     identity_level: IdentityLevel,
+    triangular_level: TriangularLevel,
     /// Residual of each row at the answer.
     residuals: Vec<f64>,
 }
@@ -46,6 +48,7 @@ impl Solver {
             active_set: ActiveSet::with_capacity(unknowns, levels, rows),
             level: LevelSolver::with_capacity(unknowns, rows_of_level),
             identity_level: IdentityLevel::with_capacity(unknowns),
+            triangular_level: TriangularLevel::with_capacity(unknowns),
             residuals: Vec::with_capacity(rows),
         }
     }
@@ -132,7 +135,10 @@ impl Solver {
         (0..problem.levels.len()).all(|k| {
             let is_last = k + 1 == problem.levels.len();
             set.dropped.clear();
-            let outcome = if is_last { self.identity_level.solve(problem, set, k) } else { Outcome::NotApplicable };
+            let mut outcome = if is_last { self.identity_level.solve(problem, set, k) } else { Outcome::NotApplicable };
+            if is_last && outcome == Outcome::NotApplicable {
+                outcome = self.triangular_level.solve(problem, set, k);
+            }
             match outcome {
                 Outcome::NotApplicable => self.level.solve(problem, set, k),
                 outcome => outcome == Outcome::Solved,

@@ -33,6 +33,9 @@ pub(crate) const LARGEST_NUMBER: f64 = 1e60;
 /// Pivot of the Gram matrix of a level of single unknowns. Unit: none (eigenvalues lie in 0..1).
 pub(crate) const SINGULAR: f64 = 1e-6;
 
+/// Diagonal entry of a triangular level, from which on down it is left to the general solver. Unit: share of the largest one.
+pub(crate) const ILL_CONDITIONED: f64 = 1e-8;
+
 /// Updated squared norm below which it is computed anew. Unit: share of a squared norm.
 pub(crate) const NORM_UPDATE: f64 = 1e-3;
 
