@@ -79,7 +79,12 @@ fn the_grip_and_ligaments_of_a_body_that_falls_are_told_as_not_judged() {
     assert_eq!(run.code, 1, "{}", run.stderr);
     let row = |start: &str| run.stdout.lines().find(|line| line.trim_start().starts_with(start)).unwrap().to_owned();
     let as_it_is = row("as it is");
-    assert_eq!(as_it_is.matches("not judged").count(), 2, "{}", run.stdout);
+    // A column is there where it tells some row from the others.
+    let header = row("What would help");
+    let judged =
+        ["hazard for ligaments", "strength of the grip"].iter().filter(|column| header.contains(**column)).count();
+    assert!(header.contains("strength of the grip"), "{header}");
+    assert_eq!(as_it_is.matches("not judged").count(), judged, "{}", run.stdout);
     assert!(!as_it_is.contains("less than half") && !as_it_is.contains("none"), "{as_it_is}");
     let lighter = row("98");
     assert!(lighter.contains("half or more") || lighter.contains("less than half"), "{lighter}");

@@ -176,7 +176,7 @@ fn what_matters_and_is_not_supported_is_an_error_with_its_place() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What only wrong files reach: each is refused with its place and what would be accepted.
+/// Each fault is refused with its place and what would be accepted.
 #[test]
 fn what_is_missing_twice_or_out_of_its_limits_is_an_error_with_its_place() {
     let pin = joint("PinJoint", PIN);

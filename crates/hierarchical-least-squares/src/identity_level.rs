@@ -11,10 +11,10 @@ use crate::problem::Problem;
 use crate::tolerances::SINGULAR;
 use crate::working_set::{Constraint, RowState, Side};
 
-/// The end of [`IdentityLevel::solve`].
+/// The end of the solution of a last level of a special kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// The level is of another kind, or `G G^T` is close to singular.
+    /// The level is of another kind, or close to singular.
     NotApplicable,
     /// The level is as small as the levels above allow.
     Solved,

@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::{Balance, ContactForces, Missing, Place, Slip, Support};
+use crate::contact::{ContactForces, Place, Support};
 use crate::joint_torques::JointTorques;
 use crate::model::SharedModel;
 use crate::posture::Posture;
@@ -35,8 +35,6 @@ const RESTING: u32 = u32::MAX;
 const SLOPE_VALIDITY: f64 = 0.005;
 /// Half of a step is taken where all of it leaves more of second order in a task above relief, m or rad. Assumed.
 const SECOND_ORDER: f64 = 5e-4;
-/// Steps within which balance must be recovered after an event.
-const RECOVERY_STEPS: usize = 300;
 /// A half-space that is violated by more was not kept, rad or m.
 const HALF_SPACE_TOLERANCE: f64 = 1e-6;
 
@@ -248,36 +246,6 @@ impl<'a> BodyMotion<'a> {
     /// Goes back to the posture in which the last step began; torques stay to be updated.
     pub(super) fn take_back(&self, posture: &mut Posture) {
         posture.values_mut().copy_from_slice(self.before.values());
-    }
-
-    /// After an event: moves until the supports hold the body again and are in their places, within the same time step, as a body does that anticipates a
-    /// load. Where no such posture is found `posture` stays; the answer is the force and moment that are missing there.
-    pub(super) fn recover_balance(&mut self, posture: &mut Posture) -> Result<Option<Missing>, ScenarioError> {
-        self.update(posture)?;
-        let missing = self.contact().missing(&self.model, self.torques().kinematics());
-        if missing.is_none() {
-            return Ok(None);
-        }
-        self.before.values_mut().copy_from_slice(posture.values());
-        for _ in 0..RECOVERY_STEPS {
-            self.engine.step(posture)?;
-            self.update(posture)?;
-            if self.contact().balance() != Balance::Held {
-                continue;
-            }
-            if !self.engine.slip().exceeds(Slip::NOTICED) {
-                break;
-            }
-            // Where supports come back to their places at the cost of tasks and effort the merit rises, and steps would become ever shorter.
-            self.engine.widen_trust_region();
-        }
-        if self.contact().balance() == Balance::Held {
-            self.restart_convergence();
-            return Ok(None);
-        }
-        self.take_back(posture);
-        self.update(posture)?;
-        Ok(missing)
     }
 
     /// Slope of a coordinate's external torque along the motion that all levels above relief allow; `None` where they do not let

@@ -20,6 +20,7 @@ mod muscles_under_way;
 mod offer;
 mod path;
 mod prediction;
+mod recovery;
 mod relief_log;
 mod rest;
 mod run;
