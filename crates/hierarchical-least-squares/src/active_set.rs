@@ -88,7 +88,7 @@ impl ActiveSet {
         self.order_unknowns(problem);
         self.x_norm = norm(&self.x);
         self.multipliers.reset(n, self.rows.offsets());
-        self.factor.reset(&self.order, |i| self.working_set.bounds[i] != Side::Inactive);
+        self.factor.reset(&self.order, &self.working_set.bounds);
         self.changes = 0;
         self.most_changes = CHANGES + CHANGES_PER_ROW * (n + rows);
     }
@@ -228,7 +228,7 @@ impl ActiveSet {
     fn refactorise(&mut self, problem: &Problem) {
         self.constraints.clear();
         self.constraints.extend_from_slice(self.factor.constraints());
-        self.factor.reset(&self.order, |i| self.working_set.bounds[i] != Side::Inactive);
+        self.factor.reset(&self.order, &self.working_set.bounds);
         for c in 0..self.constraints.len() {
             let Constraint::Row(row) = self.constraints[c] else { continue };
             if self.working_set.states[row] != RowState::Inactive && !self.append_row(problem, row) {

@@ -10,7 +10,7 @@
 
 use crate::linalg::{add_scaled, add_scaled_pair, dot, dot_pair, norm, rotate, rotation};
 use crate::tolerances::ROTATIONS_PER_COLUMN;
-use crate::working_set::Constraint;
+use crate::working_set::{Constraint, Side};
 
 /// The factor, which grows by a row at its end, and from which rows are removed.
 #[derive(Clone, Debug, Default)]
@@ -93,8 +93,9 @@ impl Factor {
         }
     }
 
-    /// Removes all rows. The columns become the unknowns of `order` that are not `at_bound`.
-    pub(crate) fn reset(&mut self, order: &[usize], at_bound: impl Fn(usize) -> bool) {
+    /// Removes all rows. The columns become the unknowns of `order` that are at none of their `bounds`; without `bounds` all of them.
+    pub(crate) fn reset(&mut self, order: &[usize], bounds: &[Side]) {
+        let at_bound = |i: usize| bounds.get(i).is_some_and(|side| *side != Side::Inactive);
         self.columns.clear();
         self.columns.extend(order.iter().filter(|&&i| !at_bound(i)));
         self.columns_left_out.clear();

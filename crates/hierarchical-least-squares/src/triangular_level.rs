@@ -8,7 +8,7 @@
 use crate::active_set::ActiveSet;
 use crate::factor::Factor;
 use crate::identity_level::Outcome;
-use crate::linalg::{add_scaled, dot, norm, solve_upper};
+use crate::linalg::{dot, norm, solve_upper, solve_upper_transposed};
 use crate::problem::Problem;
 use crate::tolerances::{ILL_CONDITIONED, INDEPENDENT, REACHED, REFINEMENTS};
 use crate::working_set::{Constraint, RowState, Side};
@@ -89,7 +89,7 @@ impl TriangularLevel {
 
     /// Factorises the rows of the constraints in `entering` anew.
     fn factorise(&mut self, problem: &Problem, set: &ActiveSet, k: usize) {
-        self.factor.reset(&self.columns, |_| false);
+        self.factor.reset(&self.columns, &[]);
         for c in 0..self.entering.len() {
             let constraint = self.entering[c];
             if !self.append(problem, set, k, constraint) {
@@ -106,7 +106,8 @@ impl TriangularLevel {
             Constraint::Bound(i) => self.work[i] = 1.0,
             Constraint::Row(row) => self.work[..n].copy_from_slice(set.rows.coefficients(problem, row)),
         }
-        solve_transposed(&problem.levels[k].matrix, &mut self.work[..n]);
+        let first = self.work[..n].iter().position(|entry| *entry != 0.0).unwrap_or(0);
+        solve_upper_transposed(&problem.levels[k].matrix[first * n + first..], n, &mut self.work[first..n]);
         let length = norm(&self.work[..n]);
         let rank = self.factor.len();
         self.factor.transform(&mut self.work, rank);
@@ -233,18 +234,6 @@ fn is_triangular(problem: &Problem, k: usize) -> bool {
         (least.min(row[i].abs()), most.max(row[i].abs()))
     });
     least > ILL_CONDITIONED * most && rows().all(|(i, row)| row[..i].iter().all(|entry| *entry == 0.0))
-}
-
-/// Replaces `b` by the solution of `R^T w = b`; zeros at its beginning stay.
-fn solve_transposed(matrix: &[f64], b: &mut [f64]) {
-    let n = b.len();
-    let first = b.iter().position(|entry| *entry != 0.0).unwrap_or(n);
-    for r in first..n {
-        let row = &matrix[r * n..(r + 1) * n];
-        b[r] /= row[r];
-        let value = b[r];
-        add_scaled(&mut b[r + 1..], -value, &row[r + 1..]);
-    }
 }
 
 #[cfg(test)]
