@@ -9,7 +9,8 @@ import { gzipSync } from "node:zlib";
 import { atRest, close, dist, open, result, root, useBrowser, web } from "./browser.mjs";
 
 // Compressed by gzip, bytes: the module of the solver, and everything that the first visit loads, of which the skin (0.29 MB) comes after the first
-// picture, and the licence of the skin, which is loaded where it is read, no part; then the module with all readers and writers, which is loaded where a model file is opened or a file for other programs is asked for.
+// picture; then the module with all readers and writers, which is loaded where a model file is opened or a file for other programs is asked for.
+// The licence of the skin is loaded where it is read, and does not count.
 const MOST_MODULE = 1_000_000;
 const MOST_LOADED = 1_450_000;
 const MOST_LATER = 1_300_000;
