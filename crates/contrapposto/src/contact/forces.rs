@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 
 use super::Support;
 use super::rows::{FORCES_PER_CORNER, Unknowns, bounds, friction_rows, share_row};
-use super::support::{SupportError, root_rates};
+use super::support::{SupportError, rates_that_move, root_rates};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Side};
 use crate::statics::{FixedIn, Load, LoadKind};
@@ -48,7 +48,7 @@ pub struct ContactForces {
     supports: Vec<Support>,
     /// Rates that only supports can hold.
     root: Vec<usize>,
-    /// Coordinates whose effort counts, and their rates.
+    /// Coordinates whose effort depends on contact forces, and their rates.
     working: Vec<(usize, usize)>,
     sides: Vec<Side>,
     /// Weight of the body, N; 1 for a body without weight.
@@ -103,9 +103,11 @@ impl ContactForces {
             (problem.lower[i], problem.upper[i]) = bounds(i);
         }
         let weight = model.mass() * model.gravity().norm();
+        let moves = rates_that_move(model, &supports);
         let coordinates = model.coordinates().iter().enumerate();
         let working = coordinates.filter(|(i, c)| c.groups.is_some() && !model.is_dependent(*i));
-        let working: Vec<(usize, usize)> = working.filter_map(|(i, c)| Some((i, c.rate?))).collect();
+        let working = working.filter_map(|(i, c)| Some((i, c.rate?))).filter(|(_, rate)| moves[*rate]);
+        let working: Vec<(usize, usize)> = working.collect();
         let mut forces = Self {
             sides: vec![Side::Positive; working.len()],
             working,
