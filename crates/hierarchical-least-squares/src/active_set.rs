@@ -9,10 +9,8 @@ use crate::linalg::{add_scaled, norm};
 use crate::multipliers::MultiplierTable;
 use crate::problem::Problem;
 use crate::rows::Rows;
-use crate::tolerances::{
-    CHANGES, CHANGES_PER_ROW, CYCLING, INDEPENDENT, MANY_UNKNOWNS, MULTIPLIER, NO_MOTION, ROUNDING, TIE,
-};
-use crate::working_set::{Blocking, Constraint, RowState, Side, WorkingSet};
+use crate::tolerances::{CHANGES, CHANGES_PER_ROW, CYCLING, INDEPENDENT, MANY_UNKNOWNS, MULTIPLIER, ROUNDING};
+use crate::working_set::{Constraint, RowState, Side, WorkingSet};
 
 /// The iterate, its working set and the factor of the working set.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +21,10 @@ pub(crate) struct ActiveSet {
     pub(crate) x_norm: f64,
     /// The step from the iterate, by unknown.
     pub(crate) step: Vec<f64>,
+    /// Length of the way of the iterate since the first level began.
+    pub(crate) way: f64,
+    /// By row: the length of way up to which the iterate cannot meet a limit of the row.
+    pub(crate) free_until: Vec<f64>,
     pub(crate) working_set: WorkingSet,
     pub(crate) factor: Factor,
     pub(crate) multipliers: MultiplierTable,
@@ -46,6 +48,7 @@ impl ActiveSet {
             rows: Rows::with_capacity(levels, rows),
             x: Vec::with_capacity(n),
             step: Vec::with_capacity(n),
+            free_until: Vec::with_capacity(rows),
             working_set: WorkingSet::with_capacity(n, rows),
             factor: Factor::with_capacity(n),
             multipliers: MultiplierTable::with_capacity(unknowns, levels, rows),
@@ -85,6 +88,9 @@ impl ActiveSet {
             vector.clear();
             vector.resize(len, 0.0);
         }
+        self.way = 0.0;
+        self.free_until.clear();
+        self.free_until.resize(rows, 0.0);
         self.order_unknowns(problem);
         self.x_norm = norm(&self.x);
         self.multipliers.reset(n, self.rows.offsets());
@@ -154,8 +160,7 @@ impl ActiveSet {
     /// moved an unknown that these rows hold) cannot be appended: the column of the unknown is left out, so that the bound also holds once one of
     /// these rows is dropped.
     fn activate_bound(&mut self, problem: &Problem, i: usize, side: Side) {
-        self.working_set.bounds[i] = side;
-        self.x[i] = if side == Side::Lower { problem.lower[i] } else { problem.upper[i] };
+        self.move_to_bound(problem, i, side);
         self.work.fill(0.0);
         if let Some(column) = self.factor.columns().iter().position(|&unknown| unknown == i) {
             self.work[column] = 1.0;
@@ -163,6 +168,14 @@ impl ActiveSet {
                 self.refactorise(problem);
             }
         }
+    }
+
+    /// Moves an unknown to a bound that it has reached but for rounding, and makes the bound active.
+    pub(crate) fn move_to_bound(&mut self, problem: &Problem, i: usize, side: Side) {
+        self.working_set.bounds[i] = side;
+        let bound = if side == Side::Lower { problem.lower[i] } else { problem.upper[i] };
+        self.way += (bound - self.x[i]).abs();
+        self.x[i] = bound;
     }
 
     /// Appends a row to the factor; `false` if it is linearly dependent.
@@ -246,56 +259,6 @@ impl ActiveSet {
                 self.step[i] = self.work[column];
             }
         }
-    }
-
-    /// The first limit of a bound, or of a row of the levels up to `k`, that the step meets before its end.
-    ///
-    /// Of limits that the step meets at once, as those of a symmetric problem, the first in the order of unknowns and rows
-    /// is taken: the last digits, which differ between machines, do not choose.
-    pub(crate) fn first_blocking(&self, problem: &Problem, k: usize) -> Option<Blocking> {
-        let length = norm(&self.step);
-        let mut first: Option<Blocking> = None;
-        let mut consider = |change: f64, value: f64, (lower, upper): (f64, f64), constraint: Constraint| {
-            let (room, side) = if change > 0.0 { (upper - value, Side::Upper) } else { (lower - value, Side::Lower) };
-            let share = (room / change).max(0.0);
-            if share < first.map_or(1.0, |first| first.share * (1.0 - TIE)) {
-                first = Some(Blocking { share, constraint, side });
-            }
-        };
-        for (i, &change) in self.step.iter().enumerate() {
-            if self.working_set.bounds[i] == Side::Inactive && change.abs() > NO_MOTION * length {
-                consider(change, self.x[i], (problem.lower[i], problem.upper[i]), Constraint::Bound(i));
-            }
-        }
-        for row in 0..self.rows.of_level(k).end {
-            if self.working_set.states[row] != RowState::Inactive || !self.rows.is_nonzero(row) {
-                continue;
-            }
-            let limits = self.rows.limits(problem, row);
-            if limits.0.is_infinite() && limits.1.is_infinite() {
-                continue;
-            }
-            let change = self.rows.value(problem, row, &self.step);
-            if change.abs() > NO_MOTION * length * self.rows.norm(row) {
-                consider(change, self.value(problem, row), limits, Constraint::Row(row));
-            }
-        }
-        first
-    }
-
-    /// Moves the iterate along the step, up to the limit that blocks it. Bounds hold exactly.
-    pub(crate) fn advance(&mut self, problem: &Problem, blocking: Option<Blocking>) {
-        let share = blocking.map_or(1.0, |blocking| blocking.share);
-        if share * norm(&self.step) > ROUNDING * self.x_norm {
-            self.dropped.iterate_moves(blocking);
-        }
-        let bounds = problem.lower.iter().zip(&problem.upper);
-        for ((x, step), (lower, upper)) in self.x.iter_mut().zip(&self.step).zip(bounds) {
-            let end = *x + share * step;
-            let end = if end < *lower { *lower } else { end };
-            *x = if end > *upper { *upper } else { end };
-        }
-        self.x_norm = norm(&self.x);
     }
 
     /// Computes the multipliers of level `k` for the first `above` constraints of the factor and all bounds.

@@ -38,6 +38,7 @@
 //! [`linalg`] holds the dense linear algebra of the solver, for other solvers to use.
 
 mod active_set;
+mod blocking;
 mod dropped;
 mod factor;
 mod identity_level;

@@ -24,6 +24,9 @@ pub(crate) const NO_MOTION: f64 = 1e-14;
 /// Difference of the ways to two limits below which a step meets both at once. Unit: share of the way.
 pub(crate) const TIE: f64 = 1e-13;
 
+/// Share of the way to a limit that is taken for certainly free: far below 1 beside the rounding of sums of ways.
+pub(crate) const NEARLY_ALL: f64 = 1.0 - 1e-9;
+
 /// Norm of a row. Unit: that of the coefficients.
 pub(crate) const ZERO_ROW: f64 = 1e-60;
 

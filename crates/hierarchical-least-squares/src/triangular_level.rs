@@ -165,10 +165,7 @@ impl TriangularLevel {
     fn activate(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize, constraint: Constraint, side: Side) {
         set.dropped.block(constraint, side);
         match constraint {
-            Constraint::Bound(i) => {
-                set.working_set.bounds[i] = side;
-                set.x[i] = if side == Side::Lower { problem.lower[i] } else { problem.upper[i] };
-            }
+            Constraint::Bound(i) => set.move_to_bound(problem, i, side),
             Constraint::Row(row) => set.working_set.set_row(row, RowState::Active, side),
         }
         if self.append(problem, set, k, constraint) {
