@@ -17,7 +17,7 @@ const EXPLORATORY_STEPS: usize = 20;
 /// Largest change of a rate below which an exploratory solve ends, rad or m: a descent takes its posture on from there.
 const EXPLORATORY_TOLERANCE: f64 = 1e-5;
 /// Steps of an approach to the tasks.
-const APPROACH_STEPS: usize = 40;
+const APPROACH_STEPS: usize = 20;
 /// Missing contact force and moment that are allowed to postures of each stage, body weights (times 1 m).
 const ALLOWED_MISSING: [f64; 4] = [1e-3, 1e-3, 1e-8, 1e-8];
 /// Change of every rate below which the approach to the tasks ends, rad or m.
