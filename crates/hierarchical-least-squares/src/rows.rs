@@ -3,6 +3,8 @@
 //! Rows are counted through all levels. The size of rounding errors in the value of row `a` at `x` is
 //! `ROUNDING (max(|lower|, |upper|) + |a| |x|)`, infinite limits left out.
 
+use std::ops::Range;
+
 use crate::linalg::{dot, norm_and_nonzeros};
 use crate::problem::{Problem, ProblemError};
 use crate::tolerances::{LARGEST_NUMBER, ROUNDING, ZERO_ROW};
@@ -17,6 +19,8 @@ pub(crate) struct Rows {
     norms: Vec<f64>,
     /// The only unknown with a coefficient other than zero.
     single: Vec<Option<usize>>,
+    /// Unknowns, in whole groups of eight, outside of which the coefficients are zero.
+    spans: Vec<Range<usize>>,
     /// Larger absolute value of the finite limits.
     limits: Vec<f64>,
 }
@@ -28,6 +32,7 @@ impl Rows {
             positions: Vec::with_capacity(rows),
             norms: Vec::with_capacity(rows),
             single: Vec::with_capacity(rows),
+            spans: Vec::with_capacity(rows),
             limits: Vec::with_capacity(rows),
         }
     }
@@ -39,6 +44,7 @@ impl Rows {
         self.norms.clear();
         self.limits.clear();
         self.single.clear();
+        self.spans.clear();
         let size = |limit: f64| if limit.is_finite() { limit.abs() } else { 0.0 };
         let mut accepted = true;
         for level in &problem.levels {
@@ -51,6 +57,7 @@ impl Rows {
                 let single = if nonzeros == 1 { [next].into_iter().chain(0..n).find(is_nonzero) } else { None };
                 self.norms.push(single.map_or(norm, |column| row[column].abs()));
                 self.single.push(single);
+                self.spans.push(span(row));
                 self.limits.push(size(level.lower[i]).max(size(level.upper[i])));
                 accepted &= norm <= LARGEST_NUMBER;
             }
@@ -81,7 +88,7 @@ impl Rows {
 
     /// The rows of level `k`.
     #[inline]
-    pub(crate) fn of_level(&self, k: usize) -> std::ops::Range<usize> {
+    pub(crate) fn of_level(&self, k: usize) -> Range<usize> {
         self.offsets[k]..self.offsets[k + 1]
     }
 
@@ -114,7 +121,8 @@ impl Rows {
     #[inline]
     pub(crate) fn value(&self, problem: &Problem, row: usize, x: &[f64]) -> f64 {
         let a = self.coefficients(problem, row);
-        self.single[row].map_or_else(|| dot(a, x), |column| a[column] * x[column])
+        let Range { start, end } = self.spans[row];
+        self.single[row].map_or_else(|| dot(&a[start..end], &x[start..end]), |column| a[column] * x[column])
     }
 
     /// Residual of a row at `x`, computed from the problem.
@@ -134,5 +142,34 @@ impl Rows {
     #[inline]
     pub(crate) fn is_nonzero(&self, row: usize) -> bool {
         self.norms[row] > ZERO_ROW
+    }
+}
+
+/// The groups of eight coefficients from the first to the last that is not zero: sums over them have the bits of sums over all.
+fn span(row: &[f64]) -> Range<usize> {
+    let (eights, rest) = row.as_chunks::<8>();
+    let is_nonzero = |eight: &[f64; 8]| *eight != [0.0; 8];
+    let start = 8 * eights.iter().position(is_nonzero).unwrap_or(eights.len());
+    if rest.iter().any(|a| *a != 0.0) {
+        return start..row.len();
+    }
+    start..eights.iter().rposition(is_nonzero).map_or(start, |last| 8 * (last + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_span_holds_all_coefficients_in_whole_eights() {
+        let mut row = [0.0; 27];
+        assert_eq!(span(&row), 24..24);
+        row[11] = 1.0;
+        assert_eq!(span(&row), 8..16);
+        row[16] = -2.0;
+        assert_eq!(span(&row), 8..24);
+        row[26] = 1.0;
+        assert_eq!(span(&row), 8..27);
+        assert_eq!(span(&[0.0, 3.0]), 0..2);
     }
 }
