@@ -35,9 +35,11 @@ pub(crate) struct LevelSolver {
     /// Sum of the absolute contributions to the gradient at the minimum; 0 where all of it is rounding.
     gradient_size: f64,
     /// Number of columns behind `above` in which the level moves: `rank`, or all of them where the residual rows determine
-    /// every column and no level follows. Then no row needs to be in the factor.
+    /// every column. Then no row needs to be in the factor, but at the end those of a level that others follow.
     columns: usize,
     overdetermined: bool,
+    /// The residual rows did not determine every column, or the factor is needed for the levels below.
+    needs_factor: bool,
     /// The step in these columns.
     y: Vec<f64>,
     /// `Q^T x` of a damped level.
@@ -68,9 +70,13 @@ impl LevelSolver {
         choose_residual_rows(problem, set, k);
         self.y.resize(problem.unknowns(), 0.0);
         self.by_constraints_above.clear();
-        self.overdetermined = k + 1 == problem.levels.len() && problem.levels[k].damping == 0.0;
+        let is_last = k + 1 == problem.levels.len();
+        let changes = set.changes();
+        self.needs_factor = problem.levels[k].damping > 0.0;
         loop {
             self.above = set.factor.len();
+            // Most often nothing changes, and then the factor comes at once.
+            self.overdetermined = !self.needs_factor && (is_last || set.changes() > changes);
             self.factorise(problem, set, k);
             if let Some(Blocking { constraint, side, .. }) = self.minimise(problem, set, k) {
                 if !set.count_change() {
@@ -82,7 +88,13 @@ impl LevelSolver {
             }
             self.ignore_rounding_of_levels_above(set);
             self.gradient_size = self.gradient_size(problem, set, k);
-            let Some(constraint) = self.constraint_to_drop(problem, set, k) else { break };
+            let Some(constraint) = self.constraint_to_drop(problem, set, k) else {
+                if is_last || !self.overdetermined {
+                    break;
+                }
+                self.needs_factor = true;
+                continue;
+            };
             if !set.count_change() {
                 return false;
             }
@@ -162,7 +174,7 @@ impl LevelSolver {
         for attempt in 0..=REFINEMENTS {
             self.solve_least_squares(problem, set, k);
             if self.overdetermined && !self.determines_all_columns(set) {
-                self.overdetermined = false;
+                (self.overdetermined, self.needs_factor) = (false, true);
                 self.factorise(problem, set, k);
                 self.solve_least_squares(problem, set, k);
             }

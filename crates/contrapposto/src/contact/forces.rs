@@ -135,6 +135,12 @@ impl ContactForces {
         self.root.retain(|own| *own != rate);
     }
 
+    /// From now on the forces keep the body in equilibrium and are as small as they can be, whatever muscles work.
+    pub(crate) fn leave_effort_out(&mut self) {
+        self.working.clear();
+        self.sides.clear();
+    }
+
     /// Forgets what earlier postures have shown: the next answer is that of new forces, to the bit.
     pub fn forget(&mut self) {
         self.solver.forget();

@@ -144,7 +144,8 @@ impl<'a> Solvers<'a> {
         let settling = Options { local_minima: options.local_minima.min(1), ..options };
         let mut engines = [engine(exploratory, &levels)?, engine(settling, &levels)?, engine(options, &levels)?];
         engines[0].set_hessian_model(HessianModel::Partial);
-        let approach = engine(Options { local_minima: 0, ..options }, &levels[..=slot])?;
+        let mut approach = engine(Options { local_minima: 0, ..options }, &levels[..=slot])?;
+        approach.leave_effort_of_forces_out();
         Ok(Self { search, engines, approach, slot, reached: vec![] })
     }
 

@@ -164,6 +164,12 @@ impl<'a> Engine<'a> {
         }
     }
 
+    /// Contact forces need no longer be those of least effort, only keep the body in equilibrium: for postures of which nobody is told the forces.
+    pub(crate) fn leave_effort_of_forces_out(&mut self) {
+        self.iterate.contact.leave_effort_out();
+        self.iterate.invalidate();
+    }
+
     /// Torques of the posture that was evaluated last, contact forces included.
     pub fn torques(&self) -> &JointTorques {
         &self.iterate.torques
