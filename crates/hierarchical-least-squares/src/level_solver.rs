@@ -380,3 +380,75 @@ impl LevelSolver {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+    use rand_pcg::Pcg64Mcg;
+
+    use crate::linalg::{add_scaled, norm};
+    use crate::{Level, Problem, Solver, Status};
+
+    /// Bounds, equations, inequalities, a level that determines all unknowns, and a level below it.
+    fn random_problem(random: &mut Pcg64Mcg, n: usize) -> Problem {
+        let mut problem = Problem::new(n);
+        for i in 0..n {
+            (problem.lower[i], problem.upper[i]) = (-random.random_range(0.0..0.5), random.random_range(0.0..0.5));
+        }
+        for (rows, width) in [(n / 6, 0.0), (n / 2, 0.4), (n + 2, 0.0), (3, 0.0)] {
+            let mut level = Level::default();
+            for _ in 0..rows {
+                let row: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();
+                let right = random.random_range(-1.0..1.0);
+                level.push(&row, right, right + width);
+            }
+            problem.levels.push(level);
+        }
+        problem
+    }
+
+    /// Damping whose square is zero changes no answer, and keeps the rows of a level in the factor all the time.
+    #[test]
+    fn a_level_factorised_by_columns_has_the_answers_and_multipliers_of_one_in_the_factor() {
+        let seed = 20_261_202;
+        println!("seed {seed}");
+        let mut random = Pcg64Mcg::new(seed);
+        let (mut worst, mut changes) = (0f64, 0);
+        for case in 0..1000 {
+            let problem = {
+                let n = random.random_range(6..30);
+                random_problem(&mut random, n)
+            };
+            let mut other = problem.clone();
+            other.levels[2].damping = 1e-200;
+            let (mut solver, mut in_factor) = (Solver::new(), Solver::new());
+            for step in 0..2 {
+                let solve = |solver: &mut Solver, problem| {
+                    if step == 0 { solver.solve(problem) } else { solver.solve_next(problem) }
+                };
+                assert_eq!(solve(&mut solver, &problem), Ok(Status::Solved), "case {case}");
+                assert_eq!(solve(&mut in_factor, &other), Ok(Status::Solved), "case {case}");
+                changes += solver.changes();
+                let off = solver.solution().iter().zip(in_factor.solution()).map(|(a, b)| (a - b).abs());
+                worst = off.fold(worst, f64::max);
+                assert!(worst < 1e-9, "case {case}, step {step}: off by {worst}");
+                let (ours, theirs) = (solver.multipliers(2), in_factor.multipliers(2));
+                let both = ours.bounds.iter().zip(theirs.bounds).chain(ours.rows.iter().zip(theirs.rows));
+                let size = norm(theirs.bounds) + norm(theirs.rows) + 1.0;
+                let off = both.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs() / size));
+                assert!(off < 1e-8, "case {case}, step {step}: multipliers off by {off}");
+                // More rows than unknowns are fixed for the level below: its multipliers are not the only ones, but they balance its gradient.
+                let below = solver.multipliers(3);
+                let mut left = below.bounds.to_vec();
+                let levels = problem.levels[..3].iter().flat_map(|level| level.matrix.chunks_exact(left.len()));
+                let rows: Vec<&[f64]> = levels.chain(problem.levels[3].matrix.chunks_exact(left.len())).collect();
+                let weights = below.rows[..rows.len() - 3].iter().chain(solver.residual(3));
+                rows.iter().zip(weights).for_each(|(row, weight)| add_scaled(&mut left, *weight, row));
+                let size = norm(below.bounds) + norm(below.rows) + 1.0;
+                assert!(norm(&left) < 1e-8 * size, "case {case}, step {step}: {left:?} is left of the gradient");
+            }
+        }
+        println!("off by {worst:.1e} at most; {changes} changes");
+        assert!(changes > 5000, "{changes}");
+    }
+}
