@@ -195,7 +195,7 @@ fn a_rest_that_makes_no_sense_is_refused_by_name() {
 #[test]
 fn a_hand_that_rests_is_taken_up_when_the_work_moves_away() {
     let text = text("may_carry = [\"left_hand\"]", "duration_s = 275").replace("0.76, 0.00]", "0.76, 0.05]");
-    let event = "[[event]]\nat_s = 260\ntask = 1\ntarget_m = [0.40, 1.10, 0.20]\n[strategy]";
+    let event = "[[event]]\nat_s = 260\ntask = 1\ntarget_m = [0.10, 1.20, 0.50]\n[strategy]";
     let scenario = read_scenario("bench.toml", text.replacen("[strategy]", event, 1).as_bytes(), None).unwrap();
     let (mut deepest, mut share) = (f64::NEG_INFINITY, 1.0);
     let mut missing = vec![];
