@@ -189,8 +189,8 @@ fn within(peer: &Peer, seed: u64, count: usize) {
         }
         if steps == STEPS {
             let solved = engine.solve(&peer.rest).unwrap();
-            let solved: Vec<f64> = solved.levels[..3].iter().map(|level| level.length).collect();
-            println!("target {i} is not reached by plain steps: {:?}; by `solve` {solved:.1e?}", target.as_slice());
+            let solved: Vec<String> = solved.levels[..3].iter().map(|level| format!("{:.1e}", level.length)).collect();
+            println!("target {i} is not reached by plain steps: {:?}; errors of `solve` {solved:?}", target.as_slice());
             failed += 1;
         }
         let total: f64 = least[..steps].iter().sum();
