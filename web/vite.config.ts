@@ -29,10 +29,23 @@ function filesForServiceWorker(): Plugin {
   };
 }
 
+/** Leaves indentation and whole lines of comment out of three's shaders, which are texts that no minifier reads: 1.5 kB, compressed. */
+function shadersWithoutIndentation(): Plugin {
+  return {
+    name: "shaders-without-indentation",
+    apply: "build",
+    enforce: "pre",
+    transform(code, id) {
+      if (!/[\\/]node_modules[\\/]three[\\/]/.test(id)) return null;
+      return code.replace(/\n[ \t]*\/\/[^\n]*(?=\n)/g, "").replace(/\n\s+/g, "\n").replace(/(\\n)(?:\\n|\\t)+/g, "$1");
+    },
+  };
+}
+
 // Relative addresses: the page works from any folder of any file server.
 export default defineConfig({
   base: "./",
-  plugins: [filesForServiceWorker()],
+  plugins: [shadersWithoutIndentation(), filesForServiceWorker()],
   build: { target: "es2022", modulePreload: { polyfill: false }, assetsInlineLimit: 0, chunkSizeWarningLimit: 900 },
   worker: { format: "es" },
 });
